@@ -372,17 +372,6 @@ class Config(Brief, Table):
 
     @model_validator(mode="before")
     @classmethod
-    def _without_sister(cls, given: object) -> object:
-        """Earlier versions scaled the longitudinal force of the base file by the measured side force."""
-        if isinstance(given, dict) and "sister" in given:
-            raise q.wrong(
-                "is no longer known; remove it: Fx and combined slip come from the tyre whose file [tyre] base names",
-                "sister",
-            )
-        return given
-
-    @model_validator(mode="before")
-    @classmethod
     def _load_of_radius(cls, given: object) -> object:
         """A rolling radius without a load holds at the nominal load."""
         if not isinstance(given, dict) or not isinstance(given.get("tyre"), dict):
@@ -484,7 +473,7 @@ def given_values(tyre: TyreTable) -> dict[str, Any]:
         "UNLOADED_RADIUS": tyre.unloaded_radius,
         "WIDTH": tyre.width,
         "RIM_RADIUS": tyre.rim_radius,
-        "TYRESIDE": tyre.side.upper() if tyre.side else None,
+        "TYRESIDE": tyre.side.upper(),
         "FITTYP": 62,
     }
     return {name: value for name, value in given.items() if value is not None}

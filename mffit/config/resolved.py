@@ -16,21 +16,19 @@ def resolved(config: Config, folder: str | Path) -> dict[str, Any]:
     relative to ``folder``, so that both folders can be moved together; otherwise they become absolute.
     """
     content = config.model_dump(exclude_none=True)
-    content["rolling_radius"] = list(content["rolling_radius"])
-    content["sweep"] = [_plain(sweep) for sweep in content["sweep"]]
+    entries = (*content["sweep"], *content["fit"]["exclude"])
+    for table, key in (
+        *((entry, "file") for entry in entries),
+        (content["tyre"], "base"),
+        (content["tyre"], "priors"),
+    ):
+        if key in table:
+            table[key] = _moved(table[key], config.folder, Path(folder))
     for sweep in content["sweep"]:
-        sweep["file"] = _moved(sweep["file"], config.folder, Path(folder))
-    for key in ("base", "priors"):
-        if key in content["tyre"]:
-            content["tyre"][key] = _moved(content["tyre"][key], config.folder, Path(folder))
-    for entry in content["fit"]["exclude"]:
-        entry["file"] = _moved(entry["file"], config.folder, Path(folder))
+        if not sweep["columns"]:
+            del sweep["columns"]
     content["fit"], content["lab"] = _filled(content["fit"]), _filled(content["lab"])
-    return {name: value for name, value in content.items() if value not in ([], {})}
-
-
-def _plain(sweep: dict[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in sweep.items() if name != "columns" or value}
+    return {name: value for name, value in _filled(content).items() if value != {}}
 
 
 def _filled(table: dict[str, Any]) -> dict[str, Any]:

@@ -329,13 +329,13 @@ def _at_nominal(
     if nearest is not None and not np.any(np.isfinite(evidence.points.T)):
         of_slopes.append(wording.UNKNOWN_WARMTH)
     if not epsilons:
-        lacking = wording.nothing_measured(
+        lacks = wording.lacking(
             camber=any(row.C_gamma is not None for row in per_load),
             zeros=any(row.C_phit is not None for row in per_load),
             radius=bool(evidence.radii),
         )
         notes = (*(() if evidence.rig else (wording.STRAIGHT_PATH,)), *of_slopes)
-        return _AtNominal(nearest, None, notes, (lacking,) if evidence.rig else ())
+        return _AtNominal(nearest, None, notes, (wording.nothing_measured(lacks),) if evidence.rig else ())
     loads = [row.load for row in per_load if row.load in epsilons]
     at = min(range(len(loads)), key=lambda k: abs(loads[k] - nominal_load))
     law = load_dependence(loads, [epsilons[load] for load in loads], at, nominal_load)
@@ -367,16 +367,12 @@ def _taken_elsewhere(evidence: DirectEvidence, per_load: Sequence[LoadResult], t
         points.sweep_names[k]: float(np.median(points.p[there & (points.sweep == k)]))
         for k in np.unique(points.sweep[there]).tolist()
     }
-    said = wording.taken_elsewhere(
-        taken,
-        expected,
-        float(np.median(points.p[main])),
-        others,
+    lacks = wording.lacking(
         camber=row is not None and row.C_gamma is not None,
         zeros=row is not None and row.F_phit is not None,
         radius=row is not None and row.r_e is not None,
     )
-    return [said]
+    return [wording.taken_elsewhere(taken, expected, float(np.median(points.p[main])), others, lacks)]
 
 
 def _with_measured_skew(evidence: DirectEvidence, slopes: Sequence[LoadSlopes]) -> DirectEvidence:

@@ -15,7 +15,7 @@ ONE_LOAD = "PECP2 is 0: one load was measured."
 EPSILON_IN_NOISE = "PECP2 is 0: eps_gamma itself is within 2 u of zero, so a relative slope has no meaning."
 
 
-def _lacking(*, camber: bool, zeros: bool, radius: bool) -> list[str]:
+def lacking(*, camber: bool, zeros: bool, radius: bool) -> list[str]:
     """The inputs that eps_gamma lacks; ``camber``, ``zeros`` and ``radius`` state whether these exist."""
     needed = {
         "a camber sweep at zero sideslip": camber,
@@ -26,38 +26,29 @@ def _lacking(*, camber: bool, zeros: bool, radius: bool) -> list[str]:
 
 
 def taken_elsewhere(
-    taken: float,
-    expected: float,
-    pressure: float,
-    others: Mapping[str, float],
-    *,
-    camber: bool,
-    zeros: bool,
-    radius: bool,
+    taken: float, expected: float, pressure: float, others: Mapping[str, float], lacks: Sequence[str]
 ) -> str:
-    """The warning that eps_gamma is taken at another load [N] than expected.
+    """The warning that eps_gamma is taken at another load [N] than expected, where inputs are lacking.
 
-    ``others`` are the sweeps at the expected load and another pressure, with that pressure [Pa]; ``camber``, ``zeros`` and
-    ``radius`` state which of the inputs exist at the expected load.
+    ``others`` are the sweeps at the expected load and another pressure, with that pressure [Pa].
     """
     said = (
         f"eps_gamma is taken at {taken:.0f} N and not at {expected:.0f} N, the load nearest to the nominal one: at the main "
         f"pressure of {1e-3 * pressure:.0f} kPa there is no complete measurement there"
     )
-    if lacking := _lacking(camber=camber, zeros=zeros, radius=radius):
-        said += f", for lack of {' and '.join(lacking)}"
+    if lacks:
+        said += f", for lack of {' and '.join(lacks)}"
     if others:
         named = ", ".join(f"{name} ({1e-3 * p:.0f} kPa)" for name, p in others.items())
         said += f"; {named} ran at {expected:.0f} N and another pressure: check p_kPa there"
     return said
 
 
-def nothing_measured(*, camber: bool, zeros: bool, radius: bool) -> str:
-    """The inputs that eps_gamma lacks; ``camber``, ``zeros`` and ``radius`` state whether these exist at any load."""
-    lacking = _lacking(camber=camber, zeros=zeros, radius=radius)
-    if not lacking:
+def nothing_measured(lacks: Sequence[str]) -> str:
+    """The warning that eps_gamma lacks inputs at every load."""
+    if not lacks:
         return "eps_gamma could not be measured: camber sweep and zeros are at different loads; it needs both at one load"
-    return f"eps_gamma could not be measured, for lack of {' and '.join(lacking)}"
+    return f"eps_gamma could not be measured, for lack of {' and '.join(lacks)}"
 
 
 def load_slope(pecp2: float, u: float) -> str:

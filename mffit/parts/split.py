@@ -6,7 +6,7 @@ It takes pairs of points at (alpha, gamma) and (-alpha, -gamma) under the same c
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -17,17 +17,6 @@ from mffit.points import Points, levels
 from tir.frozen import ReadOnlyArrays
 
 READ = ("Fy", "Mz", "u_Fy", "u_Mz")
-
-
-class Mirrors(NamedTuple):
-    """Readings of the mirror of every point (n,), and how they were found."""
-
-    partner: np.ndarray  #: index of the mirror; -1 if interpolated or unpaired
-    Fy: np.ndarray  #: side force of the mirror [N]; NaN if unpaired
-    Mz: np.ndarray  #: [Nm]
-    u_Fy: np.ndarray
-    u_Mz: np.ndarray
-    paired: np.ndarray  #: "exact" | "interpolated" | "unpaired"
 
 
 def conditions(points: Points) -> list[np.ndarray]:
@@ -42,41 +31,6 @@ def conditions(points: Points) -> list[np.ndarray]:
     return levels.rows_of_equal(
         np.column_stack([*keys, points.phi_t, points.setup, points.mount, points.direction])
     )
-
-
-def find_mirrors(points: Points) -> Mirrors:
-    """The mirror of every point: a measured one within tolerance, otherwise one interpolated along the mirrored sweep.
-
-    A mirror in the same sweep is preferred. Readings are interpolated over alpha at the mirrored camber, or over gamma at
-    the mirrored sideslip, within one condition and without extrapolation. On a straight path, which has no turn slip to
-    remove, all points stay unpaired.
-    """
-    n = len(points)
-    partner = np.full(n, -1)
-    paired = np.full(n, "unpaired", dtype="<U12")
-    found = {name: np.full(n, np.nan) for name in READ}
-    angles = np.degrees(np.column_stack([points.alpha, points.gamma]))
-    tolerance = np.array([SAME_SIDESLIP, constants.SAME_CAMBER])
-    for rows in conditions(points) if np.any(points.phi_t) else ():
-        for i in rows.tolist():
-            off = np.abs(angles[rows] + angles[i])
-            near = off < tolerance
-            close = rows[np.all(near, axis=1)]
-            values: dict[str, float] | None
-            if len(close):
-                other = points.sweep[close] != points.sweep[i]
-                j = int(close[np.lexsort((np.sum(off[np.all(near, axis=1)], axis=1), other))[0]])
-                partner[i], paired[i] = j, "exact"
-                values = {name: float(getattr(points, name)[j]) for name in READ}
-            else:
-                along = (
-                    _interpolated(points, rows[near[:, 1 - k]], angles[:, k], -angles[i, k]) for k in (0, 1)
-                )
-                values = next((line for line in along if line is not None), None)
-                paired[i] = "unpaired" if values is None else "interpolated"
-            for name, value in (values or {}).items():
-                found[name][i] = value
-    return Mirrors(partner=partner, paired=paired, **found)
 
 
 def _interpolated(points: Points, index: np.ndarray, angle: np.ndarray, at: float) -> dict[str, float] | None:
@@ -135,21 +89,46 @@ NUMBERS = ("Fy_odd", "Fy_even", "Mz_odd", "Mz_even", "u_Fy_odd", "u_Mz_odd")
 def split(points: Points) -> Parts:
     """Decompose Fy and Mz of every point by mirror symmetry.
 
-    On a straight path all points stay unpaired, without a remark.
+    The mirror of a point is a measured one within tolerance, if possible of the same sweep; otherwise readings are interpolated
+    over alpha at the mirrored camber, or over gamma at the mirrored sideslip, within one condition and without extrapolation. On
+    a straight path, which has no turn slip to remove, all points stay unpaired, without a remark.
     """
-    mirrors = find_mirrors(points)
-    Fy_odd, Mz_odd = (points.Fy - mirrors.Fy) / 2.0, (points.Mz - mirrors.Mz) / 2.0
-    unpaired = (mirrors.paired == "unpaired") & bool(np.any(points.phi_t))
+    n = len(points)
+    partner = np.full(n, -1)
+    paired = np.full(n, "unpaired", dtype="<U12")
+    mirror = {name: np.full(n, np.nan) for name in READ}
+    angles = np.degrees(np.column_stack([points.alpha, points.gamma]))
+    tolerance = np.array([SAME_SIDESLIP, constants.SAME_CAMBER])
+    for rows in conditions(points) if np.any(points.phi_t) else ():
+        for i in rows.tolist():
+            off = np.abs(angles[rows] + angles[i])
+            near = off < tolerance
+            close = rows[np.all(near, axis=1)]
+            values: dict[str, float] | None
+            if len(close):
+                other = points.sweep[close] != points.sweep[i]
+                j = int(close[np.lexsort((np.sum(off[np.all(near, axis=1)], axis=1), other))[0]])
+                partner[i], paired[i] = j, "exact"
+                values = {name: float(getattr(points, name)[j]) for name in READ}
+            else:
+                along = (
+                    _interpolated(points, rows[near[:, 1 - k]], angles[:, k], -angles[i, k]) for k in (0, 1)
+                )
+                values = next((line for line in along if line is not None), None)
+                paired[i] = "unpaired" if values is None else "interpolated"
+            for name, value in (values or {}).items():
+                mirror[name][i] = value
+    Fy_odd, Mz_odd = (points.Fy - mirror["Fy"]) / 2.0, (points.Mz - mirror["Mz"]) / 2.0
     return Parts(
         Fy_odd=Fy_odd,
         Fy_even=points.Fy - Fy_odd,
         Mz_odd=Mz_odd,
         Mz_even=points.Mz - Mz_odd,
-        u_Fy_odd=np.hypot(points.u_Fy, mirrors.u_Fy) / 2.0,
-        u_Mz_odd=np.hypot(points.u_Mz, mirrors.u_Mz) / 2.0,
-        paired=mirrors.paired,
-        partner=mirrors.partner,
-        unpaired=_sentences(points, unpaired),
+        u_Fy_odd=np.hypot(points.u_Fy, mirror["u_Fy"]) / 2.0,
+        u_Mz_odd=np.hypot(points.u_Mz, mirror["u_Mz"]) / 2.0,
+        paired=paired,
+        partner=partner,
+        unpaired=_sentences(points, (paired == "unpaired") & bool(np.any(points.phi_t))),
         alpha_odd=points.alpha,
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import Any
 
 import numpy as np
 
@@ -34,17 +35,17 @@ def left_out_by_diagnosis(points: Points, found: Diagnosis) -> tuple[LeftOut, ..
     return (*_misread(points, found), *_outliers(found.outliers))
 
 
+def _entry(points: Points, rows: np.ndarray, rule: str, why: str, **more: Any) -> LeftOut:
+    """The entry of a rule about readings (m,) of one file; ``more`` are its channel and weight."""
+    lines = line_text(points.line[rows])
+    file = points.files[points.file[rows[0]]]
+    return LeftOut(file=file, lines=lines, count=len(rows), by="rule", rule=rule, why=why, **more)
+
+
 def _misread(points: Points, found: Diagnosis) -> Iterator[LeftOut]:
     for wrong in (note for note in found.notes if isinstance(note, Misread)):
         rows = np.flatnonzero(points.sweep == points.sweep_names.index(wrong.sweep))
-        yield LeftOut(
-            file=wrong.file,
-            lines=line_text(points.line[rows]),
-            count=len(rows),
-            by="rule",
-            rule=misread_sweep.id,
-            why=f"looks like {wrong.looks}",
-        )
+        yield _entry(points, rows, misread_sweep.id, f"looks like {wrong.looks}")
 
 
 def _outliers(found: Iterable[Outlier]) -> Iterator[LeftOut]:
@@ -76,39 +77,21 @@ def _discounted(points: Points, fitted: FitResult) -> Iterator[LeftOut]:
             weight[own] = (np.min(factor[own], initial=np.inf) / factor[own]) ** 2
         reduced = weight < 1.0 - 1e-6  # rounding
         turning = fitted.at_turns.get(channel, np.zeros(len(points), dtype=bool))
-        for rule, why, which in (
-            (
-                HUBER,
-                "the model misses these readings by more than most others, so they have less weight",
-                ~turning,
-            ),
-            (TURNING.id, "a moving sweep turns back here, and the rig accelerates", turning),
-        ):
+        more = "the model misses these readings by more than most others, so they have less weight"
+        turns = "a moving sweep turns back here, and the rig accelerates"
+        for rule, why, which in ((HUBER, more, ~turning), (TURNING.id, turns, turning)):
             for file in np.unique(points.file[reduced & which]).tolist():
                 rows = np.flatnonzero(reduced & which & (points.file == file))
-                yield LeftOut(
-                    file=points.files[file],
-                    lines=line_text(points.line[rows]),
-                    count=len(rows),
-                    by="rule",
-                    rule=rule,
-                    channel=channel,
-                    weight=float(np.min(weight[rows])),
-                    why=why,
-                )
+                least = float(np.min(weight[rows]))
+                yield _entry(points, rows, rule, why, channel=channel, weight=least)
 
 
 def _doubts(points: Points, fitted: FitResult) -> Iterator[LeftOut]:
     for doubt in fitted.doubts:
-        unit = CHANNELS[doubt.channel].unit
         looks = f"; it looks like {doubt.looks}" if doubt.looks else ""
-        yield LeftOut(
-            file=doubt.file,
-            lines=line_text(points.line[doubt.index]),
-            count=len(doubt.index),
-            by="rule",
-            rule=doubtful_sweep.id,
-            channel=doubt.channel,
-            weight=1.0,
-            why=f"doubted, with full weight: {doubt.rms:.3g} {unit} from what all other sweeps predict{looks}",
+        why = (
+            f"doubted, with full weight: {doubt.rms:.3g} {CHANNELS[doubt.channel].unit} from what all other sweeps "
+            f"predict{looks}"
         )
+        rows = np.asarray(doubt.index)
+        yield _entry(points, rows, doubtful_sweep.id, why, channel=doubt.channel, weight=1.0)

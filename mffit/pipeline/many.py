@@ -134,20 +134,11 @@ def _jobs(
             refused[path] = BuildOutcome(path, str(path), None, "refused", str(error))
             continue
         folder = (path.parent / "out" if out is None else out / name).absolute()
-        job = Job(path, name, folder, ensemble, with_report)
-        _check_folder(job, wanted, given=out is not None)
-        wanted.append(job)
+        if other := next((job for job in wanted if job.out == folder), None):
+            remedy = f'both are named "{name}" in [tyre], change one' if out else "name a folder with --out"
+            raise InputError(f"would be built into {folder}, like {other.source}: {remedy}", file=path)
+        wanted.append(Job(path, name, folder, ensemble, with_report))
     return wanted, refused
-
-
-def _check_folder(job: Job, others: Sequence[Job], *, given: bool) -> None:
-    """Refuse a job whose folder is that of another; ``given``: whether --out was."""
-    for other in others:
-        if other.out == job.out:
-            remedy = (
-                f'both are named "{job.name}" in [tyre], change one' if given else "name a folder with --out"
-            )
-            raise InputError(f"would be built into {job.out}, like {other.source}: {remedy}", file=job.source)
 
 
 def is_current(config: Config, out: Path, *, ensemble: int = 0, with_report: bool = True) -> bool:

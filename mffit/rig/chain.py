@@ -11,7 +11,7 @@ import numpy as np
 
 from mffit.points import Points
 from mffit.quantities import CHANNELS
-from mffit.rig.histories import History, path_radii
+from mffit.rig.histories import History, RowsOfTest, path_radii
 from mffit.rig.lag import lagged_setting
 from mffit.rig.play import settled
 from mffit.rig_errors import AFTER, BEFORE, T_REF, RigError
@@ -31,8 +31,8 @@ class Chain:
     coefficients : every value of the property file
     numbers : every rig error, scalar or (n,)
     usual_radius : declared radius of the usual path [m]
-    turn_slip, star : as in :class:`mffit.rig.Simulation`
-    history, rows : history of the whole test, and the rows (n,) of the points in it; default: the points are the whole test
+    modes : ``turn_slip`` and ``star`` as in :class:`mffit.rig.Simulation`
+    place : of the points in their test; default: the points are the whole test
     """
 
     def __init__(
@@ -42,15 +42,13 @@ class Chain:
         numbers: Mapping[str, Any],
         *,
         usual_radius: float,
-        turn_slip: bool,
-        star: bool,
-        history: History | None = None,
-        rows: np.ndarray | slice = slice(None),
+        modes: Mapping[str, bool],
+        place: RowsOfTest | None = None,
     ) -> None:
         self.points, self.numbers = points, numbers
-        self._history, self._rows = History(points) if history is None else history, rows
+        self._history, self._rows = RowsOfTest(History(points)) if place is None else place
         self.true: dict[str, Any] = {}  #: channels (n,) of the tyre before their readings
-        self._usual_radius, self._modes = usual_radius, {"turn_slip": turn_slip, "star": star}
+        self._usual_radius, self._modes = usual_radius, modes
         if np.any(points.mount < 0):
             coefficients = vars(turned_on_rim(SimpleNamespace(**coefficients), points.mount))
         self._coefficients = dict(coefficients)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -41,6 +42,13 @@ class History:
     def usual_speed(self) -> float:
         """The most frequent speed [m/s]."""
         return reference_speed(self.points)
+
+
+class RowsOfTest(NamedTuple):
+    """Some points of a test, and the history of the whole test."""
+
+    history: History
+    rows: np.ndarray | slice = slice(None)  #: indices (n,) of the points
 
 
 def blocks(points: Points, *, by_sweep: bool) -> Iterator[np.ndarray]:

@@ -14,7 +14,7 @@ from mffit.points import Points
 from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.rig import constants
 from mffit.rig.chain import Chain
-from mffit.rig.histories import History, blocks, of_part, successive, usual_radius
+from mffit.rig.histories import History, RowsOfTest, blocks, of_part, successive, usual_radius
 from mffit.rig.readings import Readings
 from mffit.rig_errors import BY_NAME, NO_FAULTS, OF_RUN, RIG_ERRORS, Faults
 from tir import Tyre
@@ -156,7 +156,7 @@ class Simulation(Brief):
                 which = successive(rows)
                 every = isinstance(which, slice) and n == len(points)
                 part = points if every else points.select(which, with_table=False)
-                return here._linearised(part, names, numbers, channels, history, which)
+                return here._linearised(part, names, numbers, channels, RowsOfTest(history, which))
             whole: dict[str, np.ndarray] = {name: np.empty(n) for name in channels}
             by_number: dict[str, np.ndarray] = {name: np.empty((len(names), n)).T for name in channels}
             for i in np.array_split(np.arange(n), -(-n // constants.POINTS_OF_A_BLOCK)):
@@ -178,12 +178,11 @@ class Simulation(Brief):
         names: Sequence[str],
         numbers: Mapping[str, float],
         channels: tuple[str, ...],
-        history: History,
-        rows: np.ndarray | slice,
+        which: RowsOfTest,
     ) -> tuple[Readings, Readings]:
         """Readings and derivatives by the named numbers at some rows of a test."""
         at, n = traced(numbers), len(points)
-        chain = self._chain(points, at, history, rows)
+        chain = self._chain(points, at, which)
         out = dict(zip(channels, chain.readings(channels), strict=True))
         columns = list(at.values())
         place = [list(at).index(name.partition(OF_RUN)[0]) for name in names]
@@ -200,13 +199,7 @@ class Simulation(Brief):
                     slope[:, k] *= own
         return Readings(**{name: np.broadcast_to(plain(x), n) for name, x in out.items()}), Readings(**slopes)
 
-    def _chain(
-        self,
-        points: Points,
-        numbers: Mapping[str, Traced],
-        history: History | None = None,
-        rows: np.ndarray | slice = slice(None),
-    ) -> Chain:
+    def _chain(self, points: Points, numbers: Mapping[str, Traced], place: RowsOfTest | None = None) -> Chain:
         """The chain for the points with some numbers traced."""
         faults: dict[str, Any] = {**self.faults, **{n: x for n, x in numbers.items() if n in BY_NAME}}
         for key, added in self.of_parts.items():
@@ -217,10 +210,8 @@ class Simulation(Brief):
             {**self.values, **{n: x for n, x in numbers.items() if n in self.values}},
             faults,
             usual_radius=self.declared(points),
-            turn_slip=self.turn_slip,
-            star=self.star,
-            history=history,
-            rows=rows,
+            modes={"turn_slip": self.turn_slip, "star": self.star},
+            place=place,
         )
 
 

@@ -31,16 +31,13 @@ def _read() -> tuple[Channel, ...]:
     text = resources.files(__package__).joinpath("channels.csv").read_text(encoding="utf-8")
     return tuple(
         Channel(
-            name=row["name"],
-            kind=row["kind"],
-            unit=row["unit"],
-            lower=float(row["lower"] or "-inf"),
-            upper=float(row["upper"] or "inf"),
-            required=row["required"] == "yes",
-            below=row["below"],
-            above=row["above"],
-            aliases=tuple(row["aliases"].split()),
-            description=row["description"],
+            **row
+            | {
+                "lower": float(row["lower"] or "-inf"),
+                "upper": float(row["upper"] or "inf"),
+                "required": row["required"] == "yes",
+                "aliases": tuple(row["aliases"].split()),
+            }
         )
         for row in csv.DictReader(text.splitlines())
     )

@@ -53,6 +53,15 @@ class Dialect(NamedTuple):
     has_comma: bool  #: decimal comma instead of point
 
 
+class Body(NamedTuple):
+    """The lines of a text below its headings."""
+
+    text: bytes
+    dialect: Dialect
+    path: Path
+    above: int  #: number of lines above them
+
+
 def read_csv(path: Path) -> RawTable:
     """Read a text table, also ``.gz``; blank lines and lines that begin with ``#`` are skipped.
 
@@ -84,12 +93,12 @@ def _table_of_text(content: bytes, path: Path) -> RawTable:
     if len(first) == head.rows:
         raise without_data(path, heading_line)
     above = first[head.rows][0] - 1
-    body = content.split(b"\n", above)[above]
+    body = Body(content.split(b"\n", above)[above], dialect, path, above)
     widest = max(len(head.headings), *(len(row) for _, row in first[head.rows :]))
     names = [heading or f"column {k}" for k, heading in enumerate(head.headings, 1)]
-    table = _table(body, (*names, *range(widest - len(names))), dialect, path, above)
+    table = _table(body, (*names, *range(widest - len(names))))
     filled = np.flatnonzero(table.notna().any(axis=1).to_numpy())
-    _check_widths(body, table, filled, len(head.headings), dialect, path, above)
+    _check_widths(body, table, filled, len(head.headings))
     table = table.iloc[filled] if len(filled) < len(table) else table
     kept = [k for k, name in enumerate(names) if head.headings[k] or table[name].notna().any()]
     return RawTable(
@@ -164,15 +173,15 @@ def _point(cell: str, dialect: Dialect) -> str:
     return without_commas(cell) if dialect.has_comma else cell
 
 
-def _table(body: bytes, names: Sequence[str | int], dialect: Dialect, path: Path, above: int) -> pd.DataFrame:
-    """The rows below the headings, a row per line; ``above`` is the number of lines above them."""
+def _table(body: Body, names: Sequence[str | int]) -> pd.DataFrame:
+    """The rows below the headings, a row per line."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error", pd.errors.ParserWarning)  # it would lose cells
             table = pd.read_csv(
-                io.BytesIO(body),
-                sep=r"\s+" if dialect.separator == BLANKS else dialect.separator,
-                decimal="," if dialect.has_comma else ".",
+                io.BytesIO(body.text),
+                sep=r"\s+" if body.dialect.separator == BLANKS else body.dialect.separator,
+                decimal="," if body.dialect.has_comma else ".",
                 header=None,
                 names=list(names),
                 dtype=dict.fromkeys(LABELS.intersection(names), str),
@@ -188,34 +197,32 @@ def _table(body: bytes, names: Sequence[str | int], dialect: Dialect, path: Path
         found = re.search(r"in line (\d+), saw (\d+)", str(error))
         if found:
             width = sum(isinstance(name, str) for name in names)
-            raise ragged(int(found[2]), width, path, above + int(found[1])) from None
-        raise _open_quote(body, path, above) from None
-    if len(table) != body.count(b"\n") + (not body.endswith(b"\n")):
-        raise _open_quote(body, path, above)
+            raise ragged(int(found[2]), width, body.path, body.above + int(found[1])) from None
+        raise _open_quote(body) from None
+    if len(table) != body.text.count(b"\n") + (not body.text.endswith(b"\n")):
+        raise _open_quote(body)
     return table
 
 
-def _open_quote(body: bytes, path: Path, above: int) -> InputError:
+def _open_quote(body: Body) -> InputError:
     """The error about a row that spans several lines, at the first line with an odd number of quotation marks."""
-    lines = body.split(b"\n")
-    line = above + 1 + next((k for k, one in enumerate(lines) if one.count(b'"') % 2), 0)
+    lines = body.text.split(b"\n")
+    line = body.above + 1 + next((k for k, one in enumerate(lines) if one.count(b'"') % 2), 0)
     sentence = "a quotation mark is not closed in its line; remove it, or the line break within the cell"
-    return InputError(sentence, file=path, line=line)
+    return InputError(sentence, file=body.path, line=line)
 
 
-def _check_widths(
-    body: bytes, table: pd.DataFrame, filled: np.ndarray, width: int, dialect: Dialect, path: Path, above: int
-) -> None:
+def _check_widths(body: Body, table: pd.DataFrame, filled: np.ndarray, width: int) -> None:
     """Refuse a row with fewer or more cells than headings; empty cells at its end do not count as more."""
     missing = table.iloc[filled, width - 1].isna().to_numpy()
     more = table.iloc[filled, width:].notna().any(axis=1).to_numpy()
     if not np.any(missing | more):
         return
-    lines = body.split(b"\n")
+    lines = body.text.split(b"\n")
     for row in filled[missing | more].tolist():
-        cells = _split(lines[row].decode(errors="replace"), dialect.separator)
+        cells = _split(lines[row].decode(errors="replace"), body.dialect.separator)
         if len(cells) < width or any(cell.strip() for cell in cells[width:]):
-            raise ragged(len(cells), width, path, above + row + 1)
+            raise ragged(len(cells), width, body.path, body.above + row + 1)
 
 
 def _cells(column: pd.Series, dialect: Dialect) -> Cells:

@@ -71,11 +71,6 @@ def _mixed(headings: Sequence[str]) -> str:
     return f"{' and '.join(headings)} are in different axes by TYDEX's letters; take columns with the same letter"
 
 
-def to_contact_frame(sweep: Sweep, *, load_is_vertical: bool) -> Sweep:
-    """The sweep with forces and moments turned from C to W; see :func:`forces_turned`, :func:`moments_turned`."""
-    return moments_turned(forces_turned(sweep, load_is_vertical=load_is_vertical))
-
-
 def forces_turned(sweep: Sweep, *, load_is_vertical: bool) -> Sweep:
     """The sweep, in ISO signs, with forces turned from C to W; ``load_is_vertical``: the load column is not along the wheel
     plane.
@@ -123,7 +118,7 @@ def load_is_vertical(sweeps: Sequence[Sweep]) -> bool:
         if np.max(np.abs(sweep.gamma)) < constants.CAMBER_THAT_TURNS_LOAD.rad:
             continue
         as_given.append(np.abs(np.diff(sweep.Fz)) / sweep.Fz[1:])
-        vertical = to_contact_frame(sweep, load_is_vertical=False).Fz
+        vertical = forces_turned(sweep, load_is_vertical=False).Fz
         turned.append(np.abs(np.diff(vertical)) / sweep.Fz[1:])
     if not as_given:
         return False

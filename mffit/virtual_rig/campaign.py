@@ -234,15 +234,10 @@ def written_down(
     }
 
 
-def as_declared(rig: RigTable) -> Faults:
-    """The declared rig, with its play and path radius and without other errors."""
-    radius = rig.radius
-    return declared_faults(rig).replace(path_radius_m=math.inf if radius is None else radius)
-
-
 def given(rig: RigTable, values: Mapping[str, float]) -> Faults:
-    """The declared rig with some errors of given size."""
-    return as_declared(rig).replace(**values)
+    """The declared rig, with its play and path radius, and with errors of given size."""
+    radius = math.inf if rig.radius is None else rig.radius
+    return declared_faults(rig).replace(**{"path_radius_m": radius, **values})
 
 
 def drawn(
@@ -266,5 +261,5 @@ def drawn(
             stream = number_of(name, setup) if k and BY_NAME[name].of_setup else name
             own = np.random.default_rng([seed, zlib.crc32(stream.encode())])
             found[name] = max(prior.value + prior.u * own.standard_normal(), BY_NAME[name].lower)
-        out[setup] = as_declared(rig).replace(**{**found, **values})
+        out[setup] = given(rig, {**found, **values})
     return out

@@ -223,7 +223,7 @@ def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Chan
         settings.p,
         turn_slip=machine.phi_t_sign != 0,
     )
-    radius = loaded_radius(machine.tyre.values, load, out.Fx, out.Fy, lean, state.omega, settings.p)
+    radius = loaded_radius(machine.tyre.values, out._replace(Fz=load), lean, state.omega, settings.p)
     slip = settings.kappa
     if machine.slip_against == "loaded-radius":
         slip = (1.0 + slip) * radius / state.Re - 1.0
@@ -282,10 +282,11 @@ def _product(formulae: dict[str, Formula], settings: Settings, machine: Machine)
     return out
 
 
-def loaded_radius(
-    p: Mapping[str, Any], Fz: Any, Fx: Any, Fy: Any, gamma: Any, omega: Any, pressure: Any
-) -> Any:
-    """Distance (n,) of the wheel's centre from the contact point [m], by bisection for the load; SI, inputs (n,)."""
+def loaded_radius(p: Mapping[str, Any], at: Any, gamma: Any, omega: Any, pressure: Any) -> Any:
+    """Distance (n,) of the wheel's centre from the contact point [m], by bisection for the load; SI, inputs (n,).
+
+    ``at`` has the forces Fx, Fy and Fz.
+    """
     R0, Fz0 = p["UNLOADED_RADIUS"], p["FNOMIN"]
     rim_speed = np.abs(omega) * R0 / p["LONGVL"]
     free = R0 * (p["Q_RE0"] + p["Q_V1"] * rim_speed**2)
@@ -303,9 +304,9 @@ def loaded_radius(
         squeezed = free - radius
         relative = np.maximum(squeezed + ratio**2 * edge - p["Q_CAM3"] * squeezed * np.abs(gamma), 1e-12) / R0
         leaned = p["Q_FYS1"] + p["Q_FYS2"] * radius / free + p["Q_FYS3"] * (radius / free) ** 2
-        sideways = relative ** p["Q_FCY2"] * p["Q_FCY"] * (Fy - leaned * gamma) / Fz0
+        sideways = relative ** p["Q_FCY2"] * p["Q_FCY"] * (at.Fy - leaned * gamma) / Fz0
         carried = Fz0 * (linear * relative + p["Q_FZ2"] * relative**2)
         carried = carried * (1.0 + p["PFZ1"] * (pressure / p["NOMPRES"] - 1.0))
-        carried = carried * (1.0 + p["Q_V2"] * rim_speed - (p["Q_FCX"] * Fx / Fz0) ** 2 - sideways**2)
-        lower, upper = np.where(carried > Fz, radius, lower), np.where(carried > Fz, upper, radius)
+        carried = carried * (1.0 + p["Q_V2"] * rim_speed - (p["Q_FCX"] * at.Fx / Fz0) ** 2 - sideways**2)
+        lower, upper = np.where(carried > at.Fz, radius, lower), np.where(carried > at.Fz, upper, radius)
     return 0.5 * (lower + upper)

@@ -80,15 +80,11 @@ else:
 
 
 class OwnFaultsTable(RigErrorValues):
-    """[sweep.faults]: rig errors of one sweep in addition to those of the rig."""
+    """[sweep.faults], [setup.NAME]: rig errors of one sweep or set-up in addition to those of the rig."""
 
     def values(self) -> dict[str, float]:
         """The rig errors given in the file."""
         return self.model_dump(include=set(RIG_ERROR_NAMES), exclude_none=True)
-
-
-class SetupFaultsTable(OwnFaultsTable):
-    """[setup.NAME]: rig errors of one set-up in addition to those of the rig."""
 
 
 class FaultsTable(OwnFaultsTable):
@@ -218,7 +214,7 @@ class RigTables(Table):
     seed: int = 0
     truth: TruthTable
     faults: FaultsTable = FaultsTable()
-    setup: dict[str, SetupFaultsTable] = Field(default_factory=dict)
+    setup: dict[str, OwnFaultsTable] = Field(default_factory=dict)
     noise: NoiseTable = NoiseTable()
     drive: DriveTable = DriveTable()
     conditions: ConditionsTable = ConditionsTable()
@@ -253,23 +249,11 @@ class RigPlan:
         """Name of the set-up of every sweep, empty if there is only one."""
         return setup_names(self.declared.rig, [_entry(sweep) for sweep in self.tables.sweep])
 
-    def pressures_kPa(self, sweep: SweepPlan) -> tuple[float, ...]:
-        """Inflation pressures of a sweep [kPa]."""
-        return sweep.p_kPa or (self.tables.conditions.p_kPa or self.declared.tyre.nominal_pressure,)
-
-    def speeds_mps(self, sweep: SweepPlan) -> tuple[float, ...]:
-        """Speeds of a sweep [m/s], positive in both directions."""
-        return sweep.V_mps or (self.tables.conditions.V_mps,)
-
     @property
     def reports_slip(self) -> bool:
         """Whether the rig has a column of longitudinal slip."""
         tables = self.tables
         return tables.noise.Fx_N is not None or any(sweep.kappa != (0.0,) for sweep in tables.sweep)
-
-    def temperatures_degC(self, sweep: SweepPlan) -> tuple[float, ...]:
-        """Temperature of a sweep [degC]: one, or those of the first and the last point."""
-        return sweep.T_degC or (self.tables.conditions.T_degC,)
 
 
 def _entry(sweep: SweepPlan) -> SweepTable:

@@ -75,11 +75,12 @@ def _rolled(sweeps: list[Settings]) -> list[Settings]:
 
 
 def _settings(plan: RigPlan, sweep: SweepPlan, begins: int, pause: float) -> Settings:
+    usual = plan.tables.conditions
     V, p, Fz, gamma, alpha, kappa = (
         grid.ravel()
         for grid in np.meshgrid(
-            plan.speeds_mps(sweep),
-            plan.pressures_kPa(sweep),
+            sweep.V_mps or usual.V_mps,
+            sweep.p_kPa or usual.p_kPa or plan.declared.tyre.nominal_pressure,
             sweep.load_N,
             sweep.gamma_deg,
             sweep.alpha_deg,
@@ -88,7 +89,7 @@ def _settings(plan: RigPlan, sweep: SweepPlan, begins: int, pause: float) -> Set
         )
     )
     n = len(alpha)
-    temperatures = plan.temperatures_degC(sweep)
+    temperatures = sweep.T_degC or (usual.T_degC,)
     return Settings(
         alpha=np.radians(alpha),
         gamma=np.radians(gamma),

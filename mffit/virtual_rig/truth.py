@@ -139,7 +139,7 @@ def driven_truth(tyre: Tyre, load: float, speed: float) -> DrivenTruth:
     state = tyre.state(load, Vx=speed, p=pressure)
     rolling = tyre(load, Vx=speed, p=pressure)
     Fx = np.asarray(tyre(load, kappa=np.linspace(-1.0, 1.0, 2001), Vx=speed, p=pressure).Fx)
-    radius = loaded_radius(tyre.values, load, rolling.Fx, rolling.Fy, 0.0, float(state.omega), pressure)
+    radius = loaded_radius(tyre.values, rolling, 0.0, float(state.omega), pressure)
     return DrivenTruth(
         load_N=load,
         K_x_N=float(state.K_xk),

@@ -478,13 +478,6 @@ def test_a_table_named_by_a_number_is_refused_with_its_line(tmp_path):
     assert (caught.value.key, caught.value.line) == ("9", 16)
 
 
-def test_the_table_of_a_sister_tyre_is_refused_with_what_replaces_it(tmp_path):
-    (tmp_path / "tyre.toml").write_text(f'{MINIMAL}\n[sister]\nFx = "scaled"\n')
-    with pytest.raises(InputError, match=r"no longer known; remove it: .*\[tyre\] base") as caught:
-        config.load(tmp_path / "tyre.toml")
-    assert (caught.value.key, caught.value.line) == ("sister", 16)
-
-
 @pytest.mark.parametrize(
     ("line", "sentence"),
     [

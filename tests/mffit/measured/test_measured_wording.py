@@ -58,7 +58,7 @@ NOTES = [
 ]
 WARNINGS = [
     (
-        wording.taken_elsewhere(900.0, 1500.0, 250e3, {"lean": 200e3}, camber=False, zeros=True, radius=True),
+        wording.taken_elsewhere(900.0, 1500.0, 250e3, {"lean": 200e3}, ["a camber sweep at zero sideslip"]),
         "at 900 N and not at 1500 N, the load nearest to the nominal one: at the main pressure of 250 kPa there is no complete "
         "measurement there, for lack of a camber sweep at zero sideslip; lean (200 kPa) ran at 1500 N and another pressure",
     ),
@@ -70,10 +70,10 @@ WARNINGS = [
     (wording.slope_not_possible(1500.0, 15.0), "at 1500 N the camber sweep is too short"),
     (wording.secant_not_possible(1500.0, 15.0), "does not reach 15 deg"),
     (
-        wording.nothing_measured(camber=False, zeros=True, radius=False),
+        wording.nothing_measured(wording.lacking(camber=False, zeros=True, radius=False)),
         "for lack of a camber sweep at zero sideslip and the rolling radius",
     ),
-    (wording.nothing_measured(camber=True, zeros=True, radius=True), "at different loads"),
+    (wording.nothing_measured([]), "at different loads"),
     (
         wording.paths_contradict(
             1400.0, (1.3, -1.3), (Quantity(51.2, 3.0, "Nm"), Quantity(-20.0, 4.0, "Nm"))
@@ -99,7 +99,7 @@ def test_a_warning_is_a_sentence_with_its_numbers(warning, words):
     assert words in warning
 
 
-OF_RESULTS = {"OtherEstimate", "beside_the_file", "expanded", "advice"}
+OF_RESULTS = {"lacking", "OtherEstimate", "beside_the_file", "expanded", "advice"}
 OF_SETUPS = {
     "setup_without_zeros", "sweeps_without_setup", "last_is_aligned", "setup_misaligned", "setup_scatter",
 }  # fmt: skip

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from mffit import config
 from mffit.sweeps.assembly import sweeps_of
 from mffit.sweeps.columns import Columns
-from mffit.sweeps.frames import to_contact_frame, to_contact_point
+from mffit.sweeps.frames import forces_turned, moments_turned, to_contact_point
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.sweep import Sweep
 
@@ -52,11 +52,13 @@ def test_forces_and_moments_in_c_come_back_in_w(gamma, Fy, Fz, Mz, My):
     if force @ z < 1.0:  # pulled off the wheel: not a load that a file may hold
         return
     carried = sweep(gamma, force @ y, force @ z, torque @ z, torque @ y)
-    found = to_contact_frame(carried, load_is_vertical=False)
+    found = moments_turned(forces_turned(carried, load_is_vertical=False))
     np.testing.assert_allclose(
         [found.Fy[0], found.Fz[0], found.My[0], found.Mz[0]], [Fy, Fz, My, Mz], atol=1e-8
     )
-    vertical = to_contact_frame(sweep(gamma, force @ y, Fz, torque @ z, torque @ y), load_is_vertical=True)
+    vertical = moments_turned(
+        forces_turned(sweep(gamma, force @ y, Fz, torque @ z, torque @ y), load_is_vertical=True)
+    )
     np.testing.assert_allclose([vertical.Fy[0], vertical.Fz[0]], [Fy, Fz], atol=1e-7)
 
 
@@ -65,7 +67,7 @@ def test_at_fifty_degrees_the_frames_differ_by_the_load_times_the_sine():
     y, z = axes_of_the_wheel(np.radians(50.0))
     load = np.array([0.0, 0.0, 1500.0])
     assert load @ y == pytest.approx(1500.0 * np.sin(np.radians(50.0)))
-    found = to_contact_frame(sweep(50.0, load @ y, load @ z, 0.0, None), load_is_vertical=False)
+    found = moments_turned(forces_turned(sweep(50.0, load @ y, load @ z, 0.0, None), load_is_vertical=False))
     assert found.Fy[0] == pytest.approx(0.0, abs=1e-9)
     assert found.Fz[0] == pytest.approx(1500.0)
 

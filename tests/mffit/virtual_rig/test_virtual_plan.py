@@ -8,6 +8,7 @@ from small_plan import SMALL_PLAN
 from mffit.errors import InputError
 from mffit.virtual_rig import load_plan, simulate
 from mffit.virtual_rig.plan import angles
+from mffit.virtual_rig.settings import settings_of
 
 
 @pytest.fixture
@@ -30,7 +31,7 @@ def test_a_range_includes_both_ends():
 def test_a_plan_is_read(written):
     plan = load_plan(written())
     assert plan.declared.rig.path_radius == 1.323
-    assert plan.pressures_kPa(plan.tables.sweep[0]) == (250.0,)
+    assert set(settings_of(plan)[0].p) == {250e3}
     assert plan.phi_t_sign == -1
 
 
