@@ -5,20 +5,9 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-GREEK = str.maketrans(
-    {
-        "α": "alpha",
-        "γ": "gamma",
-        "ε": "eps",
-        "φ": "phi",
-        "κ": "kappa",
-        "σ": "sigma",
-        "ω": "omega",
-        "μ": "mu",
-        "χ": "chi",
-        "²": "2",
-    }
-)
+GREEK = str.maketrans({
+    "α": "alpha", "γ": "gamma", "ε": "eps", "φ": "phi", "κ": "kappa", "σ": "sigma", "ω": "omega", "μ": "mu", "χ": "chi", "²": "2",
+})  # fmt: skip
 
 
 class QuantityName(NamedTuple):

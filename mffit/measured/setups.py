@@ -9,7 +9,7 @@ import numpy as np
 from scipy.special import chdtrc
 from uncertainties import UFloat
 
-from mffit.config import Config
+from mffit.config import Config, path_curvature
 from mffit.constants import FALSE_ALARM
 from mffit.measured import wording
 from mffit.measured.axis import slope_at, split_of_zero
@@ -137,15 +137,11 @@ def warnings_of_setups(
 
 def _undeclared(config: Config) -> list[str]:
     """A sentence about sweeps that name no set-up although others on their path do."""
-    named = {_path(config, k) for k, sweep in enumerate(config.sweep) if sweep.setup is not None}
+    paths = [path_curvature(config.rig, sweep) for sweep in config.sweep]
+    named = {path for path, sweep in zip(paths, config.sweep, strict=True) if sweep.setup is not None}
     bare = [
         sweep.file
-        for k, sweep in enumerate(config.sweep)
-        if sweep.setup is None and _path(config, k) in named
+        for path, sweep in zip(paths, config.sweep, strict=True)
+        if sweep.setup is None and path in named
     ]
     return [wording.sweeps_without_setup(bare)] if bare else []
-
-
-def _path(config: Config, k: int) -> tuple[str | None, float | None]:
-    sweep = config.sweep[k]
-    return sweep.path_centre or config.rig.path_centre, sweep.path_radius or config.rig.radius

@@ -165,21 +165,15 @@ def _at_zero(
     return named(mean, float(np.linalg.norm(u[i])) / len(i), source, unit, kind="A")
 
 
-def forces_of_sweeps(points: Points, rows: np.ndarray, direction: int, slope: float) -> dict[int, float]:
-    """By sweep, the mean force [N] of its zeros (m,), corrected to zero sideslip with a stiffness [N/rad]."""
-    rows = rows[np.isfinite(points.Fy[rows])]
-    force, sweep = points.Fy[rows] - direction * slope * points.alpha[rows], points.sweep[rows]
-    return {int(k): float(np.mean(force[sweep == k])) for k in np.unique(sweep)}
-
-
 def unlike_zeros(points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Config) -> list[str]:
     """Warnings about sweeps of one load, path, set-up and direction with significantly different zeros."""
-    u = math.hypot(config.rig.u("alpha_0_deg"), USUAL_U_FORCE)
+    u, slope = math.hypot(config.rig.u("alpha_0_deg"), USUAL_U_FORCE), slope_at(C_alpha, group.load)
     out = []
     for direction, word in WAYS.items():
-        found = forces_of_sweeps(
-            points, zeros(points, group, direction), direction, slope_at(C_alpha, group.load)
-        )
+        rows = zeros(points, group, direction)
+        rows = rows[np.isfinite(points.Fy[rows])]
+        force, sweep = points.Fy[rows] - direction * slope * points.alpha[rows], points.sweep[rows]
+        found = {int(k): float(np.mean(force[sweep == k])) for k in np.unique(sweep)}
         readings = [named(force, u, "zero of a sweep", "N") for force in found.values()]
         if readings and combined(readings).chance < FALSE_ALARM:
             least, most = (f(found, key=lambda k: found[k]) for f in (min, max))

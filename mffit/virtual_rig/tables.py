@@ -16,16 +16,8 @@ DECIMALS = {
     "Fy_N": 2, "Mz_Nm": 3, "My_Nm": 3, "kappa": 5, "Fx_N": 2, "Mx_Nm": 3, "RL_m": 6, "omega_radps": 4,
 }  # fmt: skip
 RECORDED_DECIMALS = {
-    "alpha_deg": 2,
-    "gamma_deg": 2,
-    "Fz_N": 0,
-    "Fy_N": 0,
-    "Mz_Nm": 1,
-    "My_Nm": 1,
-    "kappa": 4,
-    "Fx_N": 0,
-    "Mx_Nm": 1,
-}
+    "alpha_deg": 2, "gamma_deg": 2, "Fz_N": 0, "Fy_N": 0, "Mz_Nm": 1, "My_Nm": 1, "kappa": 4, "Fx_N": 0, "Mx_Nm": 1,
+}  # fmt: skip
 """Decimals of recordings: far finer than the noise, and a third of the file size."""
 
 
