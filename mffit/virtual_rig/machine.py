@@ -124,18 +124,8 @@ SURROUNDINGS: dict[str, Formula] = {
 }
 """Factors on Fy and Mz."""
 YIELDS = ("compliance_deg_per_Nm", "backlash_deg")
-"""Errors of the angle that depend on the tyre's moment at that angle; see :func:`true_alpha`."""
-CELL = (
-    "gain", "nonlinearity_per_kN", "crosstalk", "crosstalk_camber", "F0_direction_N", "F0_N", "M0_Nm", "Fx0_N",
-    "Mx0_Nm", "My0_Nm", "gain_Fx", "gain_Mx", "gain_My", "gain_Mz",
-    "crosstalk_Fx_Mz_m", "crosstalk_Fx_Mx_m", "crosstalk_Fy_Mx_m", "drag_Fx_N",
-)  # fmt: skip
-"""Errors of the load cells; see :func:`reported`."""
-ELSEWHERE = ("path_radius_m", "crown_m", T_REF, "p_ref_kPa", "relaxation_m")
-"""Errors with formulae elsewhere: path radius and crown in :func:`at_the_tyre`, references in the factors and terms, lag in
-:mod:`mffit.virtual_rig.recording`."""
-FORMULAE = (*STEERS, *LEANS, *SLIPS, *LOADS, *SCALES, *ADDED, *SURROUNDINGS, *YIELDS, *CELL, *ELSEWHERE)
-"""Names of all rig errors with a formula in the virtual rig."""
+"""Errors of the angle that depend on the tyre's moment at that angle; see :func:`true_alpha`. Those of the load cells are in
+:func:`reported`, path radius and crown in :func:`at_the_tyre`, the lag in :mod:`mffit.virtual_rig.recording`."""
 
 
 def steady(machine: Machine, settings: Settings) -> Channels:
