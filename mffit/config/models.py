@@ -154,11 +154,11 @@ class MachineTable(Table):
             )
         if self.path_radius is not None and self.path is not None:
             raise q.wrong("is given together with [rig.path]; keep one of the two", "rig.path_radius")
-        radius = self.radius
+        radius, (least, most) = self.radius, q.PATH_RADII
         assert radius is not None
-        if not 0.2 <= radius <= 100.0:
+        if not least <= radius <= most:
             raise q.wrong(
-                f"gives a path radius of {radius:g} m, outside 0.2 to 100 m; check the four lengths",
+                f"gives a path radius of {radius:g} m, outside {least:g} to {most:g} m; check the four lengths",
                 "rig.path",
             )
         if self.u("path_radius_m") > constants.LARGEST_U_OF_A_RADIUS * radius:

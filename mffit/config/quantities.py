@@ -70,7 +70,9 @@ def _angle(lower: float, upper: float) -> AfterValidator:
 DEGREES = 180.0 / math.pi
 WheelRadius = Annotated[float, _length(0.03, 1.5, (0.1, 0.6))]
 Width = Annotated[float, _length(0.01, 1.0)]
-PathRadius = Annotated[float, _length(0.2, 100.0)]
+PATH_RADII = (0.2, 100.0)
+"""Smallest and largest radius of a path [m]."""
+PathRadius = Annotated[float, _length(*PATH_RADII)]
 Length = Annotated[float, _length(1e-3, 100.0)]
 Load = Annotated[
     float, AfterValidator(Range(20.0, 2e5, "N", write="newtons", units={"kilonewtons": FORCE["kn"]}))
