@@ -81,6 +81,8 @@ def build(
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
         measured, fitted = fit_and_measure(config, read.reading, parts, before, read.base, progress)
         progress(JUDGING)
+        if ensemble:
+            progress(f"drawing {ensemble} tyres from the posterior")
         result = _result(read, parts, measured, fitted, ensemble)
     result = replace(result, seconds=time.perf_counter() - began)
     if out is not None:
