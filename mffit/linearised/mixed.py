@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.linalg.blas import dtrmm
-from scipy.linalg.lapack import dtrtri
+from scipy.linalg.lapack import dsytrf, dsytri, dtrtri
 
 from tir.frozen import ReadOnlyArrays
 
@@ -105,7 +105,9 @@ class Mixed(ReadOnlyArrays):
         through = half @ halfway
         m = len(size)
         flat = halfway.reshape(-1, m)
-        information = w * sums.common - w * w * (flat.T @ flat)  # a product with its own transpose is half the work
+        information = w * sums.common - w * w * (
+            flat.T @ flat
+        )  # a product with its own transpose is half the work
         pull = w * sums.pull - w * w * sums.own_pull.ravel() @ through.reshape(-1, m)
         whole = size[:, None] * information * size
         factor = _factor(whole, ROUNDING * float(np.max(w * np.diag(sums.common) * size**2, initial=0.0)))
@@ -164,8 +166,9 @@ class Mixed(ReadOnlyArrays):
             moved.append(w * (r - x @ found.mean - own @ pull))
             order.append(out)
         through = np.concatenate(whitened) @ found.root
-        covariance = np.linalg.inv(block - through @ through.T)
-        covariance = 0.5 * (covariance + covariance.T)
+        factor, order_of_pivots, _ = dsytrf(block - through @ through.T, lower=1)
+        below = np.tril(dsytri(factor, order_of_pivots, lower=1)[0])
+        covariance = below + np.tril(below, -1).T
         return LeftOutReadings(
             rows=np.concatenate(order), error=covariance @ np.concatenate(moved), covariance=covariance
         )
