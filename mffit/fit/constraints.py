@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -56,9 +55,10 @@ def limits(p: Any, envelope: Envelope, by: Sequence[Traced] = ()) -> tuple[np.nd
     n = envelope.size
     found = [
         (np.broadcast_to(plain(row), size), np.broadcast_to(gradient(row, by), (size, len(by))))
-        for row in (*_rows(p, envelope), *_dents(p, envelope))
+        for row in _rows(p, envelope)
         for size in [max(n, np.size(plain(row)))]
     ]
+    found.append(_dents(p, envelope, by))
     return np.concatenate([value for value, _ in found]), np.concatenate([slope for _, slope in found])
 
 
@@ -122,27 +122,30 @@ def _under_slip(p: Any, envelope: Envelope, *conditions: np.ndarray) -> list[Any
     return rows
 
 
-def _dents(p: Any, envelope: Envelope) -> list[Any]:
+def _dents(p: Any, envelope: Envelope, by: Sequence[Traced]) -> tuple[np.ndarray, np.ndarray]:
     """Concavity of the curve of Fy over Fx along longitudinal slip, both over load: positive where the ellipse has a dent.
 
-    Evaluated from three neighbouring slips of the upright wheel, on a grid of loads, sideslips of either sign and slips.
+    Evaluated from three neighbouring slips of the upright wheel, on a grid of loads, sideslips of either sign and slips: (k,) and
+    (k, m) as of :func:`limits`.
     """
     if not (envelope.kappa > 0.0 and envelope.alpha > 0.0):
-        return []
+        return np.zeros(0), np.zeros((0, len(by)))
     sideslips = envelope.alpha * np.array([-1.0, -0.5, 0.5, 1.0])
     slips = (
         float(constants.BEYOND_TESTED) * envelope.kappa * np.linspace(-1.0, 1.0, constants.STEPS_OF_A_GRID)
     )
-    axes = np.meshgrid(np.linspace(*envelope.Fz, constants.LOADS_OF_A_GRID), sideslips, slips[1:-1])
-    Fz, alpha, kappa = (axis.ravel() for axis in axes)
+    grid = np.meshgrid(np.linspace(*envelope.Fz, constants.LOADS_OF_A_GRID), sideslips, slips)
+    Fz, alpha, kappa = (axis.ravel() for axis in grid)
     at = {"Fz": Fz, "alpha": alpha, "pressure": 0.5 * sum(envelope.pressure), "Vx": p.LONGVL}
-    step = slips[1] - slips[0]
-    forces = [outputs_of(("Fx", "Fy"), p, {**at, "kappa": kappa + k * step}) for k in (-1.0, 0.0, 1.0)]
-    (x, next_x), (y, next_y) = (
-        [(after - before) / unit for before, after in pairwise(force)]
-        for force, unit in zip(zip(*forces, strict=True), (Fz, -np.sign(alpha) * Fz), strict=True)
-    )
-    return [x * next_y - y * next_x - constants.LARGEST_DENT]
+    forces = outputs_of(("Fx", "Fy"), p, {**at, "kappa": kappa})
+    rises = []
+    for force, unit in zip(forces, (Fz, -np.sign(alpha) * Fz), strict=True):
+        both = np.column_stack([plain(force), gradient(force, by)]) / unit[:, None]
+        rise = np.diff(both.reshape(*grid[0].shape, -1), axis=2)
+        rises += [rise[:, :, side].reshape(-1, 1 + len(by)) for side in (slice(-1), slice(1, None))]
+    (x, dx), (next_x, dnext_x), (y, dy), (next_y, dnext_y) = ((r[:, :1], r[:, 1:]) for r in rises)
+    slope = x * dnext_y + next_y * dx - y * dnext_x - next_x * dy
+    return (x * next_y - y * next_x)[:, 0] - constants.LARGEST_DENT, slope
 
 
 def _with_slips(
