@@ -76,9 +76,14 @@ class FitResult(ReadOnlyArrays, Brief):
         return max((fit.left for fit in (self.search, self.full) if fit is not None), default=0.0)
 
     @property
+    def of_file(self) -> Mapping[str, Agreement]:
+        """By channel, agreement of the written file, which has no effects of single runs, with the points."""
+        return self.channels if self.runs is None else self.runs.alone
+
+    @property
     def headline(self) -> str:
         """The misfit of each measured channel."""
-        gaps = {name: found for name, found in self.channels.items() if found.n}
+        gaps = {name: found for name, found in self.of_file.items() if found.n}
         return ", ".join(f"{name} rmse {x.rmse:.3g} {CHANNELS[name].unit}" for name, x in gaps.items())
 
 

@@ -16,6 +16,7 @@ from mffit.recordings import constants
 from mffit.recordings.by_unit import is_of_kind, only_ones, questions, taken_for
 from mffit.recordings.slip_definition import SLIP, slip_definition
 from mffit.recordings.unstated import Choice, FoundChannel, Guess, choices
+from mffit.sweeps.about import simplified
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel
 from mffit.sweeps.columns import numbers
 from mffit.sweeps.frames import FORCES, MOMENTS, letter_of
@@ -31,7 +32,6 @@ WITH_UNIT = re.compile(r"(.+?)(?:\s*[/,_]\s*|\s+in\s+)([^_,\s]+)")
 OF_SLIP = re.compile(r"slip|schlupf", re.IGNORECASE)
 OF_ANGLE = re.compile(r"angle|winkel|side|lat|quer|schr[äa]g", re.IGNORECASE)
 
-SPELLINGS = str.maketrans({" ": "_", "-": "_", "ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
 """Characters that headings spell in several ways, and one spelling for each."""
 
 
@@ -156,11 +156,6 @@ def corrected(guessed: Guesses, raw: RawTable, choices: Collection[ColumnChoice]
 def _headings(raw: RawTable) -> dict[str, str]:
     """The heading by its simplified spelling; the first one if several share a spelling."""
     return {simplified(heading): heading for heading in reversed(raw.headings)}
-
-
-def simplified(heading: str) -> str:
-    """A heading or name without differences of case, blanks, hyphens and umlauts (``ae`` for ``ä``)."""
-    return heading.lower().translate(SPELLINGS)
 
 
 def _number_columns(raw: RawTable, named: Mapping[str, str]) -> dict[str, FoundChannel]:

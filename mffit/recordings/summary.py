@@ -11,9 +11,10 @@ from mffit.as_json import keys
 from mffit.config.lines import ranges_text
 from mffit.errors import InputError
 from mffit.recordings import constants
-from mffit.recordings.guess import candidates, simplified
+from mffit.recordings.guess import candidates
 from mffit.sheets import WORKBOOKS, file_of
 from mffit.sweeps import formats
+from mffit.sweeps.about import SPECIMEN, simplified
 from mffit.sweeps.channels import BY_NAME
 from mffit.sweeps.columns import text_of
 from mffit.sweeps.raw_table import RawTable
@@ -21,11 +22,6 @@ from mffit.sweeps.raw_table import RawTable
 RUN = {
     "run", "runs", "run_no", "run_nr", "run_number", "run_#", "file", "filename", "file_name", "recording", "test", "test_no",
     "test_number", "datei", "dateiname", "messung", "messdatei", "versuch", "lauf", "nr",
-}  # fmt: skip
-SPECIMEN = {
-    "specimen", "specimen_id", "specimen_no", "specimen_serial", "serial", "serial_no", "serial_number", "tire_serial",
-    "tyre_serial", "tire_id", "tyre_id", "tireid", "barcode", "pruefling", "seriennummer", "serien_nr", "reifennummer",
-    "reifen_nr",
 }  # fmt: skip
 QUALITY = {"quality", "quality_flag", "data_quality", "flag", "status", "result", "qualitaet", "bewertung"}
 GOOD_IF_TRUE = {"valid", "ok", "good", "gueltig", "i.o"}

@@ -41,13 +41,18 @@ def judged(result: BuildResult) -> str:
 def verdict(result: BuildResult) -> str:
     """The judgement and the misfit in a sentence."""
     fits = []
-    for name, a in result.fit.channels.items():
+    for name, a in result.fit.of_file.items():
         if a.n:
-            ratio = result.trust.over_noise.get(name)
+            ratio = over_noise(result, name)
             noise = f" ({times(ratio, 1.0)} the noise)" if ratio and ratio == ratio else ""
             fits.append(f"{number(a.rmse, digits=3)} {CHANNELS[name].unit} in {name}{noise}")
     what = f"{len(result.points)} points are fitted to {', '.join(fits[:-1])}{' and ' * (len(fits) > 1)}{fits[-1]}"
     return f"{result.tir_path} is {judged(result)}: {what}."
+
+
+def over_noise(result: BuildResult, channel: str) -> float | None:
+    """Misfit of the written file over the stated noise; None if none is stated, or if only the model has effects of the runs."""
+    return result.trust.over_noise.get(channel) if result.fit.runs is None else None
 
 
 def headlines(result: BuildResult) -> list[Headline]:

@@ -1,4 +1,4 @@
-"""Check by the measured radii that all files are of one tyre, and of the declared one."""
+"""Check by names and by the measured radii that all readings are of one tyre, and of the declared one."""
 
 from __future__ import annotations
 
@@ -11,11 +11,14 @@ import numpy as np
 import pandas as pd
 
 from mffit.config import Config
+from mffit.config.lines import ranges_text
 from mffit.points import Points, levels
 from mffit.quantities import CONDITIONS
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Finding, Outcome, rule
 from mffit.suspicion.slopes import at_zero
+from mffit.sweeps.about import names_tyre
+from tir.errors import some
 
 
 class MeasuredRadius(NamedTuple):
@@ -32,6 +35,59 @@ RADII = (
         "rolling radius, speed over rotation,", "omega_radps", lambda points: points.rolling_radius
     ),
 )
+
+
+@rule(
+    id="named-tyres",
+    sentence="names {n} tyres, {names}, and a property file describes one; make a project of each: {cure}",
+)
+def named_tyres(points: Points, config: Config) -> Iterator[Finding]:
+    """Names of tyres in a column of the readings."""
+    for heading in filter(names_tyre, map(str, points.table)):
+        table = pd.DataFrame(
+            {
+                "file": np.array(points.files)[points.file],
+                "line": points.line,
+                "last": points.last_line,
+                "name": [_name(cell) for cell in points.table[heading]],
+            }
+        )
+        table = table[table.name != ""].sort_values(["file", "line"], kind="stable")
+        count = table.name.value_counts()
+        if len(count) < 2 or 2 * len(count) > len(table):  # of one tyre, or a number of each row
+            continue
+        kept = table.name.iloc[0]
+        other = table[table.name != kept].iloc[0]
+        facts = {
+            "n": len(count),
+            "names": some([f'"{name}"' for name in table.name.unique()]),
+            "cure": _how_to_keep(kept, table),
+        }
+        yield Finding(facts, file=other.file, line=int(other.line), column=heading)
+        return
+
+
+def _name(cell: Any) -> str:
+    """The name of a tyre in a cell; "" for none, and for a number between those of two tyres, which is a mean of both."""
+    if isinstance(cell, str):
+        return " ".join(cell.split())
+    number = float(cell)
+    return f"{number:.0f}" if number.is_integer() else ""
+
+
+def _how_to_keep(kept: str, table: pd.DataFrame) -> str:
+    """What to write into ``tyre.toml`` to leave out the readings of all tyres but one."""
+    if (table.groupby("file").name.nunique() == 1).all():
+        return f'to keep "{kept}", remove the [[sweep]] of the files that name another'
+    block = ((table.name != table.name.shift()) | (table.file != table.file.shift())).cumsum()
+    parts = table.groupby(block).agg(
+        file=("file", "first"), name=("name", "first"), line=("line", "first"), last=("last", "last")
+    )
+    entries = []
+    for (file, name), rows in parts[parts.name != kept].groupby(["file", "name"]):
+        lines = ranges_text(zip(rows["line"], rows["last"], strict=True))
+        entries.append(f'{{ file = "{file}", lines = "{lines}", why = "tyre {name}" }}')
+    return f'to keep "{kept}", write exclude = [{", ".join(entries)}] under [fit]'
 
 
 @rule(

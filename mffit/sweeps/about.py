@@ -1,4 +1,4 @@
-"""What a file says of its test in its own texts: title, and name of the tyre."""
+"""What a file says of its test in its own texts: title, and name of the tyre, in a line above the readings or in a column."""
 
 from __future__ import annotations
 
@@ -11,8 +11,25 @@ TYRE_IN_TITLE = re.compile(
     re.IGNORECASE,
 )
 """The name of the tyre within a title, up to the title's next entry."""
+SPECIMEN = frozenset({
+    "tyre", "tire", "reifen", "tyre_name", "tire_name", "reifenname", "reifen_id", "specimen", "specimen_id", "specimen_no",
+    "specimen_serial", "serial", "serial_no", "serial_number", "tire_serial", "tyre_serial", "tire_id", "tyre_id", "tireid",
+    "tyreid", "tire_no", "tyre_no", "barcode", "pruefling", "seriennummer", "serien_nr", "reifennummer", "reifen_nr",
+})  # fmt: skip
+"""Headings, as :func:`simplified`, of columns that name the tyre."""
+SPELLINGS = str.maketrans({" ": "_", "-": "_", "ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
 SECTION_IN_TITLE = re.compile(r"\[[^\]]*\]")
 """The heading of a section in a text file, ``[DATA]``."""
+
+
+def simplified(heading: str) -> str:
+    """A heading or name without differences of case, blanks, hyphens and umlauts (``ae`` for ``ä``)."""
+    return heading.lower().translate(SPELLINGS)
+
+
+def names_tyre(heading: str) -> bool:
+    """Whether a column of this heading names the tyre of each row."""
+    return simplified(heading.strip()).rstrip(".") in SPECIMEN
 
 
 def named_tyre(about: Mapping[str, str]) -> str:

@@ -11,7 +11,7 @@ from mffit.report import constants
 from mffit.report.text import filling
 from mffit.report.text.direct import MAIN, estimates, setups_table, spin_numbers
 from mffit.report.text.layout import cut
-from mffit.report.verdict import headlines, purposes, verdict
+from mffit.report.verdict import headlines, over_noise, purposes, verdict
 from mffit.results import BuildResult
 from tir.errors import counted
 from tir.parameters import BY_NAME
@@ -32,6 +32,7 @@ def build_summary(result: BuildResult, written: str = "") -> str:
     return filling.text(
         "build",
         build=result,
+        over_noise=lambda channel: over_noise(result, channel),
         verdict=verdict(result),
         written=written,
         purposes=purposes(result),

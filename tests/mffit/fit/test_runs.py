@@ -18,6 +18,7 @@ from mffit.fit.influences.joint import JointFit, beyond_chance, clearly_above_ze
 from mffit.fit.influences.nuisance_choice import choose, halves_of_runs
 from mffit.linearised.mixed import Mixed
 from mffit.points import make_points
+from mffit.report import verdict as shown
 from mffit.rig import Simulation
 from mffit.rig_errors import OF_RUN
 
@@ -106,6 +107,14 @@ def test_terminal_page_and_json_say_how_large_it_is(scattered):
     assert content["runs"]["scatter"]["run_grip"]["value"] == result.fit.choice.scatter["run_grip"]
     assert content["rig"]["run_grip@250_sideslip_900"]["unit"] == "-"
     assert "run_grip" not in (folder / "small.tir").read_text()
+
+
+def test_the_shown_misfit_is_that_of_the_written_file(scattered):
+    """The file holds for the mean of the runs, so its misfit contains their scatter."""
+    result = scattered[0]
+    of_file, of_model = (found["Fy"].rmse for found in (result.fit.runs.alone, result.fit.channels))
+    assert of_file > 1.2 * of_model
+    assert f"{of_file:.3g} N in Fy" in shown.verdict(result)
 
 
 def test_runs_that_do_not_differ_get_no_numbers(alike):

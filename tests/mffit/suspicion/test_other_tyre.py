@@ -107,3 +107,54 @@ def test_init_refuses_a_project_of_two_tyres(drive, tmp_path):
     with pytest.raises(InputError, match="of two tyres"):
         pipeline.init_from(files, tmp_path / "p", unloaded_radius=0.22, nominal_load=1500.0)
     assert not (tmp_path / "p").exists()
+
+
+def listed(folder, heading, names, *, files=1):
+    """A list of finished points of two tyres: 15 readings of each by turns, in one file or in one each."""
+    rows = [
+        f"{name},{load:.0f},{a},0,{-load * np.tanh(grip * a / 10.0):.1f},200"
+        for name, grip in zip(names, (1.2, 1.6), strict=True)
+        for load in (1000.0, 2000.0, 3000.0)
+        for a in (-6, -3, 0, 3, 6)
+    ]
+    head = f"{heading},Fz_N,alpha_deg,gamma_deg,Fy_N,p_kPa"
+    parts = [rows] if files == 1 else [rows[:15], rows[15:]]
+    for k, part in enumerate(parts):
+        (folder / f"{k}.csv").write_text("\n".join([head, *part]) + "\n")
+    tyre = {"name": "x", "unloaded_radius": 0.3, "nominal_load": 2000.0, "nominal_pressure": 200.0}
+    return {
+        "tyre": tyre,
+        "rig": {"type": "flat-track"},
+        "sweep": [{"file": f"{k}.csv"} for k in range(files)],
+    }
+
+
+@pytest.mark.parametrize(
+    ("heading", "names"), [("Tyre", "AB"), ("Tire ID", "12"), ("Specimen", ("old", "new"))]
+)
+def test_a_list_that_names_two_tyres_is_refused_with_the_lines_to_leave_out(tmp_path, heading, names):
+    content = listed(tmp_path, heading, names)
+    config = configuration.load(content, folder=tmp_path)
+    with pytest.raises(
+        InputError, match=f'column {heading}: names 2 tyres, "{names[0]}", "{names[1]}"'
+    ) as found:
+        before_the_fit(points.read(config).points, config)
+    assert found.value.line == 17
+    entry = {"file": "0.csv", "lines": "17-31", "why": f"tyre {names[1]}"}
+    assert ", ".join(f'{key} = "{text}"' for key, text in entry.items()) in str(found.value)
+    cured = configuration.load({**content, "fit": {"exclude": [entry]}}, folder=tmp_path)
+    read = points.read(cured).points
+    before_the_fit(read, cured)
+    assert len(read) == 15
+
+
+def test_files_that_name_a_tyre_each_are_refused(tmp_path):
+    config = configuration.load(listed(tmp_path, "Tyre", "AB", files=2), folder=tmp_path)
+    with pytest.raises(InputError, match="remove the"):
+        before_the_fit(points.read(config).points, config)
+
+
+@pytest.mark.parametrize("names", [("A", "A"), ("", ""), ("A", "")])
+def test_a_list_that_names_one_tyre_is_not(tmp_path, names):
+    config = configuration.load(listed(tmp_path, "Tyre", names), folder=tmp_path)
+    before_the_fit(points.read(config).points, config)

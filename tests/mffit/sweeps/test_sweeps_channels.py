@@ -14,7 +14,7 @@ from mffit import config as configuration
 from mffit import sweeps as files
 from mffit.errors import InputError
 from mffit.export.tydex import TYDEX_CHANNELS
-from mffit.recordings.guess import simplified
+from mffit.sweeps.about import simplified
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, nearest_channel, nearest_heading
 from mffit.sweeps.units import UnknownUnitError, converted, is_unit, spellings
 
