@@ -42,25 +42,29 @@ class StatedByFile(NamedTuple):
 
     value: float  #: in the unit of the key
     why: str  #: where it comes from
+    heading: str  #: of its column
 
 
 def stated_by(raw: RawTable) -> dict[str, StatedByFile]:
     """The keys of [tyre] that a recording states with their units."""
     found: dict[str, StatedByFile] = {}
+    names = {heading.upper(): heading for heading in raw.headings}
     for one in TYRE_CONSTANTS:
-        value = _value(one, raw)
+        heading = names.get(one.name, "")
+        value = _value(one, raw, heading)
         if one.key not in found and one.limits[0] <= value <= one.limits[-1]:
             part = "half of " * (one.factor == 0.5)
-            found[one.key] = StatedByFile(float(f"{value:.6g}"), f"{part}{one.name} of {raw.path.name}")
+            found[one.key] = StatedByFile(
+                float(f"{value:.6g}"), f"{part}{one.name} of {raw.path.name}", heading
+            )
     return found
 
 
-def _value(one: TyreConstant, raw: RawTable) -> float:
+def _value(one: TyreConstant, raw: RawTable, heading: str) -> float:
     """The value of the key; NaN without the constant, its unit, or one value in all rows."""
-    names = {heading.upper(): heading for heading in raw.headings}
-    if one.name not in names or not (unit := raw.unit(names[one.name])):
+    if not heading or not (unit := raw.unit(heading)):
         return math.nan
-    values = np.unique(numbers(raw.column(names[one.name])))
+    values = np.unique(numbers(raw.column(heading)))
     if len(values) != 1:
         return math.nan
     try:

@@ -12,7 +12,7 @@ from mffit.recordings.recording import SniffedRecording
 from mffit.recordings.sniffed import Level, axes_reason
 from mffit.report import constants
 from mffit.report.text.layout import blocks, paragraphs, table
-from mffit.sweeps.about import title_of
+from mffit.sweeps.about import names_tyre, title_of
 
 SETTINGS = {
     "load": ("N", 1.0, 0),
@@ -67,7 +67,7 @@ def _files(recordings: Sequence[SniffedRecording]) -> str:
     for heading, unit in zip(first.headings, first.units, strict=True):
         guesses = [guess for r in recordings for guess in r.guesses.values() if guess.heading == heading]
         if not guesses:
-            rows.append((heading, unit or "-", "not used", ""))
+            rows.append((heading, unit or "-", _use(heading, recordings), ""))
             continue
         guess = guesses[0]
         lower, upper = min(g.lower for g in guesses), max(g.upper for g in guesses)
@@ -80,6 +80,12 @@ def _files(recordings: Sequence[SniffedRecording]) -> str:
     about = next(iter(texts)) if len(texts) == 1 else ""
     columns = table(("heading", "unit", "is", "range"), rows, left=3)
     return "\n".join([*heads, *([about] if about else []), "", columns])
+
+
+def _use(heading: str, recordings: Sequence[SniffedRecording]) -> str:
+    """What a column is read for that is no channel."""
+    stated = (key for r in recordings for key, one in r.tyre.items() if one.heading == heading)
+    return next(stated, "name of the tyre" if names_tyre(heading) else "not used")
 
 
 def _head(recording: SniffedRecording) -> str:

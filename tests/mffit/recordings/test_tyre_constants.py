@@ -11,6 +11,7 @@ from mffit import config as configuration
 from mffit.errors import InputError
 from mffit.pipeline import init_from
 from mffit.recordings import project_text, sniff
+from mffit.report.text.recordings import sniff_summary
 
 CHANNELS = {"SLIPANGL": "deg", "INCLANGL": "deg", "FZW": "N", "FYW": "N", "MZW": "Nm"}
 
@@ -70,3 +71,10 @@ def test_a_constant_that_states_no_radius_is_no_radius(tmp_path, line):
         InputError, match="do not state the free radius of the tyre: give --unloaded-radius M"
     ):
         init_from([path], tmp_path / "p", nominal_load=1500.0, nominal_pressure=220.0)
+
+
+def test_the_columns_of_what_is_used_say_so(tmp_path):
+    stated = [constant("OVALLDIA", "mm", 633), constant("RFREE", "mm", 315), constant("NOMPRES", "bar", 2.2)]
+    rows = [line.split() for line in sniff_summary(sniff([tydex(tmp_path, "\n".join(stated))])).splitlines()]
+    use = {row[0]: " ".join(row[2:4]) for row in rows if row and row[0] in ("OVALLDIA", "RFREE", "NOMPRES")}
+    assert use == {"OVALLDIA": "not used", "RFREE": "unloaded_radius", "NOMPRES": "nominal_pressure"}
