@@ -119,8 +119,9 @@ def _result(
         files[TEMPERATURE] = fitted.temperature.file.tyre
     of_uses = {use: files[use] for use in names if use != TEMPERATURE}
     trust, left = judged(config, reading.points, measured, fitted, of_uses)
-    said_of_trust = said(trust)  # the doubts of the reading are among its warnings
-    trust = replace(trust, doubts=(*reading.doubts, *trust.doubts))
+    said_of_trust = said(trust)  # the doubts of the reading and of single sweeps are among the warnings
+    explained = (one.sentence for one in fitted.doubts if one.looks)
+    trust = replace(trust, doubts=(*reading.doubts, *explained, *trust.doubts))
     annotated = annotator(config, read.made, measured, fitted, trust)
     missed, table = _model_error(reading.points, fitted, files[fitting.fitted_use(of_uses)])
     if trust.trusted:

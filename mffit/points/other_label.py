@@ -2,21 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import chdtrc
+from scipy.special import chdtrc, chdtri, stdtrit
 
-from mffit.constants import EXPLAINED_SHARE, FALSE_ALARM
+from mffit.constants import EXPLAINED_SHARE, FALSE_ALARM, STRAIGHT
 from mffit.points import constants, levels
-from mffit.points.like import MeanReadings, conditions, mean_readings, noise, rolling
+from mffit.points.noise import neighbour_noise, stating
 from mffit.points.points import Points, of_si
 from mffit.quantities import CONDITIONS
 from mffit.scatter import ALARM, rms
 
 LABELS = {"Fz": ("Fz_N", levels.LOAD), "p": ("p_kPa", levels.PRESSURE), "gamma": ("gamma_deg", levels.CAMBER)}
 """By setting, its column and its levels."""
+
+
+class MeanReading(NamedTuple):
+    """Mean of the side forces of a sweep at one combination of the other settings."""
+
+    Fy: float  #: [N]
+    Fz: float  #: [N]
+    alpha: float  #: [rad]
+    slope: float  #: dFy/dalpha [N/rad]; 0 if the sweep does not show it
+    u: float  #: standard error of Fy [N]
+
+
+MeansOfSweep = Mapping[tuple[int, ...], MeanReading]
 
 
 class OtherLabel(NamedTuple):
@@ -36,7 +52,7 @@ class OtherLabel(NamedTuple):
     def sentence(self) -> str:
         """The remark about the sweep."""
         word, _, unit = CONDITIONS[self.column][:3]
-        own, other = (f"{x:.4g} {unit}" for x in (self.label, self.other))
+        own, other = (f"{round(x, 1) + 0.0:.4g} {unit}" for x in (self.label, self.other))
         why = (
             f"is {self.expected:.0f} N off the sweeps at its own {own}"
             if self.of_own
@@ -50,17 +66,19 @@ class OtherLabel(NamedTuple):
 
 
 def other_labels(points: Points) -> tuple[OtherLabel, ...]:
-    """The sweeps whose side forces agree within their noise with those of other sweeps at another load, camber or pressure.
+    """The sweeps whose side forces agree with those of other sweeps at another load, camber or pressure, and not with their own.
 
-    All other settings are alike, and the one in doubt moves the forces.
-
-    That it does is seen at the sweep's own label, where other sweeps differ from it, or elsewhere in the campaign.
+    All other settings are alike, and so is the sense in which a sweep moves, because forces lag. That the own label is wrong is
+    seen from other sweeps at it, or, without any, from what the change of label does under other conditions; beyond chance, with
+    every label of every sweep counted as a candidate, and beyond what repeated sweeps differ by.
     """
-    used = rolling(points)
-    u = noise(used)
+    used = points.select(points.free_rolling & np.isfinite(points.Fy) & (points.Fz > 0.0), with_table=False)
+    u = np.where(stating(used.u_Fy), used.u_Fy, neighbour_noise(used, used.Fy))
     found: list[OtherLabel] = []
     while len(np.unique(used.sweep)) > 2:
-        suspects = [one for setting in LABELS for one in _under(setting, used, u)]
+        labelled = [_Labelled.of(setting, used, u) for setting in LABELS]
+        candidates = sum(len(one.label) * (len(one.values) - 1) for one in labelled)
+        suspects = [one for each in labelled for one in each.suspects(used, candidates)]
         if not suspects:
             break
         worst = max(suspects, key=lambda one: (one.of_own, one.expected / one.noise))
@@ -71,73 +89,182 @@ def other_labels(points: Points) -> tuple[OtherLabel, ...]:
     return tuple(found)
 
 
-def _under(setting: str, points: Points, u: np.ndarray) -> Iterator[OtherLabel]:
-    """The sweeps that fit another level of one setting."""
-    column, kind = LABELS[setting]
-    label = levels.labels_of_setting(getattr(points, setting), points.sweep, kind)
-    values = {k: float(np.median(getattr(points, setting)[label == k])) for k in np.unique(label).tolist()}
-    if len(values) < 2:
-        return
-    others = [(name, one) for name, (_, one) in LABELS.items() if name != setting]
-    keys = np.column_stack([points.setup, conditions(points, others)])
-    swept: dict[tuple[int, int], MeanReadings] = {}
-    for k in np.unique(points.sweep).tolist():
-        own = np.flatnonzero(points.sweep == k)
-        if len(np.unique(label[own])) == 1:  # a sweep over this setting has no label of it
-            swept[k, int(label[own[0]])] = mean_readings(points, own, keys, u)
-    matter = {
-        pair: share
-        for pair in {(a, b) for _, a in swept for _, b in swept if a != b}
-        if (share := _effect(setting, swept, *pair)) is not None
-    }
-    for (k, at), readings in swept.items():
-        rest = {key: one for key, one in swept.items() if key[0] != k}
-        same = _compared(setting, readings, [one for (_, b), one in rest.items() if b == at])
-        contradicts = same is not None and same.chance < FALSE_ALARM
-        for other in values:
-            if other == at:
-                continue
-            fit = _compared(setting, readings, [one for (_, b), one in rest.items() if b == other])
-            if fit is None or fit.chance < FALSE_ALARM:
-                continue
-            if same is not None and contradicts:
-                expected = same.apart
-            elif same is None and (at, other) in matter:
-                expected = matter[at, other] * fit.size
-                if fit.beyond_noise > EXPLAINED_SHARE * expected:
-                    continue
-            else:
-                continue
-            if expected > ALARM * fit.noise * np.sqrt(2.0 / fit.n):
-                scale = of_si(column)
-                yield OtherLabel(
-                    points.sweep_names[k],
-                    column,
-                    scale * values[at],
-                    scale * values[other],
-                    fit.apart,
-                    fit.n,
-                    expected,
-                    fit.noise,
-                    contradicts,
-                )
-
-
 class _Compared(NamedTuple):
-    n: int
-    apart: float  #: rms [N]
-    noise: float  #: standard error of a difference, rms [N]
-    size: float  #: side force, rms [N]
-    chance: float  #: probability of such differences by noise
+    """Differences of sweeps at settings that both have."""
+
+    apart: np.ndarray  #: (n,) [N]
+    u: np.ndarray  #: (n,) standard error by noise [N]
+    force: np.ndarray  #: (n,) [N]
+    conditions: int  #: number of combinations of the other labels
+
+    @classmethod
+    def joined(cls, parts: Sequence[_Compared]) -> _Compared | None:
+        """All differences together; None without any."""
+        if not parts:
+            return None
+        apart, u, force = (np.concatenate(one) for one in list(zip(*parts, strict=True))[:3])
+        return cls(apart, u, force, sum(one.conditions for one in parts))
 
     @property
-    def beyond_noise(self) -> float:
-        """Difference without the part that noise makes, rms [N]."""
-        return float(np.sqrt(max(self.apart**2 - self.noise**2, 0.0)))
+    def scatter(self) -> float:
+        """Difference over the force beyond noise, rms."""
+        beyond = float(np.sum(self.apart**2 - self.u**2)) / float(np.sum(self.force**2))
+        return math.sqrt(max(beyond, 0.0))
+
+    def variance(self, scatter: float) -> np.ndarray:
+        """Of the differences (n,), by noise and by a scatter over the force [N^2]."""
+        return self.u**2 + (scatter * self.force) ** 2
+
+    def is_beyond(self, sound: _Compared, chance: float) -> bool:
+        """Whether the differences are beyond noise and the scatter of sound repetitions, with this probability.
+
+        A scatter over the force is common to a sweep, and known from few conditions, no better than noise lets it be.
+        """
+        noise = np.mean(self.u**2) * chdtri(len(self.apart), chance) / len(self.apart)
+        uncertain = math.sqrt(2.0 * np.sum(sound.u**4)) / np.sum(sound.force**2)
+        scatter = np.mean(self.force**2) * max(sound.scatter**2, uncertain)
+        most = noise + scatter * stdtrit(sound.conditions, 1.0 - 0.5 * chance) ** 2
+        return bool(np.mean(self.apart**2) > most)
+
+    def is_noise(self, scatter: float) -> bool:
+        """Whether noise and a scatter over the force explain the differences."""
+        chi2 = float(np.sum(self.apart**2 / self.variance(scatter)))
+        return float(chdtrc(len(self.apart), chi2)) >= FALSE_ALARM
+
+
+@dataclass(frozen=True, slots=True)
+class _Labelled:
+    """Sweeps with one label of a setting each, and their differences from one another."""
+
+    setting: str
+    values: Mapping[int, float]  #: of the labels, in SI
+    label: Mapping[int, int]  #: by sweep
+    pairs: Mapping[tuple[int, int], _Compared]  #: by sweeps, the lower one first
+
+    @classmethod
+    def of(cls, setting: str, points: Points, u: np.ndarray) -> _Labelled:
+        """The sweeps of some points under a setting; ``u`` (n,) are standard errors [N]."""
+        _, kind = LABELS[setting]
+        label = levels.labels_of_setting(getattr(points, setting), points.sweep, kind)
+        values = {
+            k: float(np.median(getattr(points, setting)[label == k])) for k in np.unique(label).tolist()
+        }
+        if len(values) < 2:
+            return cls(setting, values, {}, {})
+        keys = _keys(setting, points)
+        swept: dict[int, MeansOfSweep] = {}
+        labels: dict[int, int] = {}
+        for k in np.unique(points.sweep).tolist():
+            own = np.flatnonzero(points.sweep == k)
+            if len(np.unique(label[own])) == 1:  # a sweep over this setting has no label of it
+                swept[k], labels[k] = _readings(points, own, keys, u), int(label[own[0]])
+        pairs = {
+            (a, b): found
+            for a, b in itertools.combinations(swept, 2)
+            if (found := _compared(setting, swept[a], swept[b])) is not None
+        }
+        return cls(setting, values, labels, pairs)
+
+    def between(self, first: int, second: int, *, without: int) -> list[_Compared]:
+        """The differences of sweeps at two labels that are not those of one sweep."""
+        return [
+            found
+            for (a, b), found in self.pairs.items()
+            if without not in (a, b) and {self.label[a], self.label[b]} == {first, second}
+        ]
+
+    def from_others(self, sweep: int, label: int) -> _Compared | None:
+        """The differences of a sweep from the others at a label."""
+        return _Compared.joined(
+            [
+                found
+                for (a, b), found in self.pairs.items()
+                if sweep in (a, b) and self.label[b if a == sweep else a] == label
+            ]
+        )
+
+    def suspects(self, points: Points, candidates: int) -> Iterator[OtherLabel]:
+        """The sweeps that fit another label, of so many candidates."""
+        column, _ = LABELS[self.setting]
+        scale = of_si(column)
+        for sweep, at in self.label.items():
+            sound = _Compared.joined([one for k in self.values for one in self.between(k, k, without=sweep)])
+            scatter = 0.0 if sound is None else sound.scatter
+            own = self.from_others(sweep, at)
+            if own is not None and (sound is None or not own.is_beyond(sound, FALSE_ALARM / candidates)):
+                continue
+            for other in self.values.keys() - {at}:
+                fit = self.from_others(sweep, other)
+                if fit is None or not fit.is_noise(scatter):
+                    continue
+                expected = rms(own.apart) if own is not None else self._missing(sweep, other, fit, candidates)
+                if expected > ALARM * rms(fit.u) * math.sqrt(2.0 / len(fit.apart)):
+                    yield OtherLabel(
+                        points.sweep_names[sweep],
+                        column,
+                        scale * self.values[at],
+                        scale * self.values[other],
+                        rms(fit.apart),
+                        len(fit.apart),
+                        expected,
+                        rms(fit.u),
+                        own is not None,
+                    )
+
+    def _missing(self, sweep: int, other: int, fit: _Compared, candidates: int) -> float:
+        """What a change of label does under other conditions, rms at the forces of a sweep [N], if it lacks that; else 0."""
+        effects = np.array([one.scatter for one in self.between(self.label[sweep], other, without=sweep)])
+        if len(effects) < 2:
+            return 0.0
+        usual, spread = float(np.mean(effects)), float(np.std(effects, ddof=1))
+        beyond = stdtrit(len(effects) - 1, 1.0 - FALSE_ALARM / candidates) * math.sqrt(
+            1.0 + 1.0 / len(effects)
+        )
+        lacks = usual - fit.scatter > beyond * spread and fit.scatter < EXPLAINED_SHARE * usual
+        return usual * rms(fit.force) if lacks else 0.0
+
+
+def _keys(setting: str, points: Points) -> np.ndarray:
+    """Per point (n, 8) what must be alike to compare sweeps under a setting; the sideslip is the third."""
+    others = [
+        levels.labels_of_setting(getattr(points, name), points.sweep, one)
+        for name, (_, one) in LABELS.items()
+        if name != setting
+    ]
+    step = np.round(points.alpha / STRAIGHT.rad).astype(int)
+    path = np.unique(points.phi_t, return_inverse=True)[1]
+    rising = np.zeros(len(points), dtype=int)
+    for k in np.unique(points.sweep[points.continuous]):
+        rows = np.flatnonzero((points.sweep == k) & points.continuous)
+        if len(rows) > 1:
+            rising[rows] = np.sign(np.gradient(points.alpha[rows]))
+    return np.column_stack([*others, step, points.direction, points.mount, path, points.setup, rising])
+
+
+def _readings(points: Points, rows: np.ndarray, keys: np.ndarray, u: np.ndarray) -> MeansOfSweep:
+    """The mean readings of a sweep by its other settings."""
+    out: dict[tuple[int, ...], MeanReading] = {}
+    for group in levels.rows_of_equal(keys[rows]):
+        own = rows[group]
+        Fy, Fz, alpha = (float(np.mean(getattr(points, name)[own])) for name in ("Fy", "Fz", "alpha"))
+        out[tuple(keys[own[0]].tolist())] = MeanReading(
+            Fy, Fz, alpha, 0.0, float(rms(u[own])) / np.sqrt(len(own))
+        )
+    for key, one in out.items():
+        beside = [out[near] for near in (_next(key, -1), _next(key, 1)) if near in out]
+        if beside:
+            low, high = min((one, *beside), key=lambda r: r.alpha), max((one, *beside), key=lambda r: r.alpha)
+            out[key] = one._replace(slope=(high.Fy - low.Fy) / (high.alpha - low.alpha))
+    return out
+
+
+def _next(key: tuple[int, ...], by: int) -> tuple[int, ...]:
+    """The key of the next step of sideslip, which is its third from the front."""
+    return (*key[:2], key[2] + by, *key[3:])
 
 
 def _differences(
-    setting: str, first: MeanReadings, second: MeanReadings
+    setting: str, first: MeansOfSweep, second: MeansOfSweep
 ) -> Iterator[tuple[float, float, float]]:
     """Difference of two sweeps [N], its standard error, and the force, at the settings that both have."""
     for key in first.keys() & second.keys():
@@ -147,27 +274,12 @@ def _differences(
         yield moved - a.Fy, float(np.hypot(a.u, scale * b.u)), a.Fy
 
 
-def _compared(setting: str, readings: MeanReadings, others: list[MeanReadings]) -> _Compared | None:
-    """A sweep against others; None with too few common readings."""
-    all_of = [one for other in others for one in _differences(setting, readings, other)]
-    if len(all_of) < constants.FEWEST_COMPARED_LABELS:
+def _compared(setting: str, first: MeansOfSweep, second: MeansOfSweep) -> _Compared | None:
+    """Two sweeps; None with too few common readings, without noise, or of a dead channel."""
+    common = first.keys() & second.keys()
+    if len(common) < constants.FEWEST_COMPARED_LABELS:
         return None
-    apart, u, force = np.transpose(all_of)
-    if not np.all(u > 0.0) or not np.any(force):  # without noise, or of a dead channel
+    apart, u, force = np.transpose(list(_differences(setting, first, second)))
+    if not np.all(u > 0.0) or not np.any(force):
         return None
-    chi2 = float(np.sum((apart / u) ** 2))
-    return _Compared(len(apart), rms(apart), rms(u), rms(force), float(chdtrc(len(apart), chi2)))
-
-
-def _effect(setting: str, swept: Mapping[tuple[int, int], MeanReadings], at: int, other: int) -> float | None:
-    """Difference over force that a change of label makes in pairs of sweeps, rms over all; None without pairs."""
-    found = [
-        _compared(setting, one, [second])
-        for (_, a), one in swept.items()
-        if a == at
-        for (_, b), second in swept.items()
-        if b == other
-    ]
-    known = [one for one in found if one is not None]
-    beyond = [one for one in known if one.chance < FALSE_ALARM]
-    return rms(np.array([one.apart / one.size for one in beyond])) if beyond else None
+    return _Compared(apart, u, force, len({key[:2] for key in common}))

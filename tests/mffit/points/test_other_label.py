@@ -67,6 +67,35 @@ def test_right_labels_are_not_doubted(seed):
     assert not other_labels(campaign(seed=seed, scatter=0.02))
 
 
+def single_sweeps(seed: int, lag: float = 0.0):
+    """A moving sweep at every load, camber and pressure, up and down by turns; 30 kPa move the force by its noise or less."""
+    random = np.random.default_rng(seed)
+    rows, number = [], 0
+    for Fz in (1500.0, 3000.0, 4500.0):
+        for gamma in (0.0, 0.1, -0.1):
+            for p in (210e3, 240e3, 270e3):
+                sense = 1.0 - 2.0 * (number % 2)
+                alpha = sense * np.radians(np.arange(-6.0, 6.1, 0.25))
+                Fy = force(alpha - sense * lag, gamma, Fz, p, by_pressure=0.06)
+                Fy = Fy + 0.004 * Fz * random.standard_normal(len(alpha))
+                rows += [(a, gamma, Fz, p, y, number) for a, y in zip(alpha, Fy, strict=True)]
+                number += 1
+    alpha, gamma, Fz, p, Fy, sweep = np.array(rows).T
+    given = {"p": p, "V": 10.0, "phi_t": 0.0, "Fy": Fy, "continuous": True}
+    names = [f"{k:02d}" for k in range(number)]
+    return make_points(alpha, gamma, Fz, **given, sweep=sweep.astype(int), sweep_names=names)
+
+
+@pytest.mark.parametrize("lag", [0.0, 0.003])
+def test_labels_without_repeated_sweeps_are_not_doubted_by_noise_or_lag(lag):
+    assert not [seed for seed in range(15) if other_labels(single_sweeps(seed, lag))]
+
+
+def test_no_camber_is_written_as_zero():
+    (found,) = other_labels(campaign(wrong={"800-250-0.1a": {"gamma": 1e-6}}))
+    assert "labelled 0 deg" in found.sentence
+
+
 def test_a_label_that_moves_nothing_is_not_doubted():
     assert not other_labels(campaign(by_pressure=0.0))
 
