@@ -23,7 +23,7 @@ from mffit.points.stretch import stretch_table
 from mffit.recordings import DiscPath, Sniffed, Stated, disc_signs, project_text, sniff
 from mffit.recordings.disc import files_of_folder
 from mffit.recordings.guess import NOTHING_NAMED
-from mffit.recordings.project_file import load_beyond, relative, slug, sweeps_text, tyre_found
+from mffit.recordings.project_file import how_to_agree, load_beyond, relative, slug, sweeps_text, tyre_found
 from mffit.recordings.recording import rolls_backward
 from mffit.recordings.sniffed import configuration_of, holding, stated_of_tyre
 from mffit.suspicion import before_the_fit, under_axes
@@ -243,8 +243,8 @@ def _check_recordings(sniffed: Sniffed, stated: Stated) -> None:
         raise InputError(sniffed.reading.warnings[-1])
     if not sniffed.axes and stated.axes is None:
         raise InputError(
-            f"no known axes fit: in ISO signs {' and '.join(sniffed.wrong)}, which no tyre does; write the tyre.toml with "
-            "`mffit init DIR` and map the column that has the wrong sign with scale = -1",
+            f"no known axes fit: in ISO signs {' and '.join(sniffed.wrong)}, which no tyre does; {how_to_agree(sniffed)}: write "
+            "that into the tyre.toml of `mffit init DIR`",
             file=first,
         )
 

@@ -264,8 +264,21 @@ def _axes(sniffed: Sniffed, stated: str | None) -> str:
         return f'axes = "{stated}"  # as chosen'
     if not sniffed.axes:
         wrong = " and ".join(sniffed.wrong[:2])
-        return f'axes = "iso"  # no known axes fit: in ISO signs {wrong}; map a column with scale = -1'
+        return f'axes = "iso"  # no known axes fit: in ISO signs {wrong}; {how_to_agree(sniffed)}'
     return f'axes = "{sniffed.axes[0]}"  # {axes_reason(sniffed)}'
+
+
+def how_to_agree(sniffed: Sniffed) -> str:
+    """What to write if no axes fit: the single columns whose reversal lets some fit, with the axes."""
+    guesses = _shared_columns(sniffed)
+    cures = [
+        f'{_column(guess._replace(scale=-guess.scale, why="")).partition("  #")[0]} under [columns] with axes = "{axes}"'
+        for name, axes in sniffed.reversible
+        if (guess := guesses.get(name)) is not None and guess.value is None
+    ]
+    if not cures:
+        return "more than one column has the wrong sign: map each with scale = -1"
+    return f"all signs agree with {', or with '.join(cures)}"
 
 
 def _shared_columns(sniffed: Sniffed) -> dict[str, Guess]:

@@ -38,6 +38,9 @@ from mffit.suspicion.other_tyre import two_tyres
 from mffit.sweeps import formats
 from tir.conventions import FLIPPED
 
+REVERSIBLE = ("Fz_N", "alpha_deg", "gamma_deg", "Fy_N", "Mz_Nm")
+"""Columns of which a single one may have the sign of other axes."""
+
 
 class Level(NamedTuple):
     """One value of a setting, at which there are stretches."""
@@ -60,6 +63,8 @@ class Sniffed:
     of_two_tyres: bool = False  #: whether the last warning of ``reading`` is about two tyres
     bad_runs: tuple[BadRun, ...] = ()  #: recordings that a summary of the test calls bad
     evidence: tuple[str, ...] = ()  #: what the axes were decided from, as phrases; empty if nothing decides
+    reversible: tuple[tuple[str, str], ...] = ()
+    """If no axes agree, single columns whose reversal lets some agree, each with the axes."""
 
     @property
     def points(self) -> Points:
@@ -138,6 +143,7 @@ def sniff(
         bool(two),
         bad,
         evidence_of(reading.points, load_falls=tried == "sae"),
+        () if found.agreeing else reversible(reading.points, tried, load_falls=tried == "sae"),
     )
 
 
@@ -251,6 +257,22 @@ def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[s
     prescribed = {formats.format_of(Path(file)).axes for file in points.files}
     agreeing = [axes for axes in agreeing if axes in prescribed] or agreeing
     return tuple(agreeing), tuple(contradictions(signatures(points)))
+
+
+def reversible(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[str, str], ...]:
+    """The single columns whose reversal lets axes agree with points that were read under the ``declared`` axes, with the axes."""
+    found = []
+    for name in REVERSIBLE:
+        field = name.partition("_")[0]
+        if field == "Fz":  # a load in ISO-W is positive either way; its sign decides which axes are possible
+            turned, falls = points, False
+        else:
+            turned, falls = points.replace(**{field: -getattr(points, field)}), load_falls
+        if field == "Fz" and not load_falls:
+            continue
+        agreeing, _ = axes_of(turned, declared, load_falls=falls)
+        found += [(name, axes) for axes in sorted(agreeing, key=list(FLIPPED).index)[:1]]
+    return tuple(found)
 
 
 SLOPES = {

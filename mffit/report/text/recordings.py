@@ -8,6 +8,7 @@ import numpy as np
 
 from mffit.points.stretch import MOVE
 from mffit.recordings import Sniffed
+from mffit.recordings.project_file import how_to_agree
 from mffit.recordings.recording import SniffedRecording
 from mffit.recordings.sniffed import Level, axes_reason
 from mffit.report import constants
@@ -108,7 +109,7 @@ def _about(recording: SniffedRecording) -> str:
 
 def _axes(sniffed: Sniffed) -> str:
     if not sniffed.axes:
-        return f"axes: none of the known axes fit; in ISO signs {' and '.join(sniffed.wrong)}"
+        return f"axes: none of the known axes fit; in ISO signs {' and '.join(sniffed.wrong)}; {how_to_agree(sniffed)}"
     return f"axes: {sniffed.axes[0]} ({axes_reason(sniffed)})"
 
 

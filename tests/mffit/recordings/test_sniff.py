@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -226,3 +227,40 @@ def test_negative_speeds_are_rolling_backwards_if_the_forces_say_so(tmp_path):
     found = pipeline.inputs.read_points(configuration.load(written[0])).points
     assert np.all(found.direction == -1)
     assert np.median(found.V) == pytest.approx(11.0, rel=0.01)
+
+
+def signed(path: Path, reversed_columns: tuple[str, ...]) -> Path:
+    """Finished points of a tyre in ISO signs, Fy falls with both angles and Mz rises with sideslip, with columns reversed."""
+    alpha, gamma, Fz = (x.ravel() for x in np.meshgrid(np.arange(-6.0, 7.0), (-3.0, 0.0, 3.0), (2e3, 4e3)))
+    Fy = -Fz * np.tanh(12.0 * np.radians(alpha) + np.radians(gamma))
+    table = pd.DataFrame({"SA": alpha, "IA": gamma, "FZ": Fz, "FY": Fy, "MZ": -0.03 * Fy, "P": 200.0})
+    for heading in reversed_columns:
+        table[heading] *= -1.0
+    units = {"SA": "deg", "IA": "deg", "FZ": "N", "FY": "N", "MZ": "Nm", "P": "kPa"}
+    table.rename(columns=lambda name: f"{name} [{units[name]}]").to_csv(path, index=False)
+    return path
+
+
+@pytest.mark.parametrize("reversed_columns", [("FZ",), ("SA",), ("MZ",), ("SA", "IA", "FZ"), ("FY",)])
+def test_a_single_reversed_column_is_named_with_the_axes(tmp_path, reversed_columns):
+    """Each cure is tried: without this column's sign the axes agree."""
+    headings = {"Fz_N": "FZ", "alpha_deg": "SA", "gamma_deg": "IA", "Fy_N": "FY", "Mz_Nm": "MZ"}
+    found = sniff([signed(tmp_path / "a.csv", reversed_columns)])
+    assert not found.axes
+    assert found.reversible
+    for name, axes in found.reversible:
+        turned = {headings[name]} ^ set(reversed_columns)
+        assert axes in sniff([signed(tmp_path / "b.csv", tuple(turned))]).axes
+        said = f'{name} = {{ column = "{headings[name]}", scale = -1 }} under [columns] with axes = "{axes}"'
+        assert said in text.sniff_summary(found)
+        with pytest.raises(InputError, match="all signs agree with"):
+            pipeline.init_from([tmp_path / "a.csv"], tmp_path / "p", unloaded_radius=0.3, nominal_load=3e3)
+    if reversed_columns == ("FZ",):
+        assert found.reversible[0] == ("Fz_N", "iso")
+
+
+def test_no_column_is_named_where_two_are_reversed(tmp_path):
+    found = sniff([signed(tmp_path / "a.csv", ("FY", "FZ"))])
+    assert not found.axes
+    assert not found.reversible
+    assert "more than one column has the wrong sign" in text.sniff_summary(found)
