@@ -100,16 +100,46 @@ def _pressures_of_moment(points: Points) -> str:
 
 
 def _senses(points: Points) -> str:
+    """Whether both senses go through the same angles, and conditions alone do not tell which sense it was.
+
+    A sense that follows load, camber or pressure looks like their effect; it is told from it inside a sweep that goes there and
+    back, by sweeps of one condition in either sense, and by senses that alternate over several conditions.
+    """
     moving, part = sense(points), parts_of_sweeps(points)
-    for k in np.unique(part):
-        rows = part == k
-        ways = [points.alpha[rows & (moving == way)] for way in (1.0, -1.0)]
+    sizes = np.bincount(part)
+    for way in (1.0, -1.0):
         # A single jump back to repeat a sweep at another load or camber is not a sweep down.
-        if min(map(len, ways)) > constants.LEAST_SHARE_OF_A_SENSE * np.sum(rows):
-            low, high = np.percentile(ways[0], MIDDLE), np.percentile(ways[1], MIDDLE)
-            if low[0] < high[1] and high[0] < low[1]:
-                return ""
-    return "no sweep goes through the same angles up and down at one condition"
+        rare = np.bincount(part, moving == way) < constants.LEAST_SHARE_OF_A_SENSE * sizes
+        moving[(moving == way) & rare[part]] = 0.0
+    low, high = zip(*(_middle(points.alpha[moving == way]) for way in (1.0, -1.0)), strict=True)
+    if not max(low) < min(high):
+        return "no sweeps go through the same angles up and down"
+    moved = moving != 0.0
+    q = constants.LEAST_SHARE_OF_A_SENSE
+    if _beyond_conditions(points, moving, moved) < 4.0 * q * (1.0 - q) * np.median(sizes):
+        return "sweeps up and sweeps down differ in load, camber, pressure or set-up, whose effect theirs looks like"
+    return ""
+
+
+def _middle(alpha: np.ndarray) -> tuple[float, float]:
+    """The middle of the angles (n,); an empty interval without any."""
+    low, high = np.percentile(alpha, MIDDLE) if len(alpha) else (math.inf, -math.inf)
+    return float(low), float(high)
+
+
+def _beyond_conditions(points: Points, moving: np.ndarray, rows: np.ndarray) -> float:
+    """Sum of squares of the sense over the mask ``rows``, less what it shares with the levels of the conditions."""
+    labels = (
+        levels.labels_of_sweeps(points.Fz, points.sweep, levels.LOAD),
+        levels.nearest_labels(points.gamma, levels.CAMBER),
+        levels.nearest_labels(points.p, levels.PRESSURE),
+        points.direction,
+        points.mount,
+        points.setup,
+    )
+    design = np.hstack([label[rows, None] == np.unique(label[rows]) for label in labels]).astype(float)
+    known = design @ np.linalg.lstsq(design, moving[rows], rcond=None)[0]
+    return float(np.sum((moving[rows] - known) ** 2))
 
 
 def _times(points: Points) -> str:

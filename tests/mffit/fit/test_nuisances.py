@@ -29,6 +29,8 @@ from tir import Quantity
 
 TERMS = {"k_T_grip_per_K": -0.006, "k_T_stiffness_per_K": -0.003, "k_T_camber_per_K": -0.005}
 COLD, WARM = 25.0, 50.0
+NINE = [(F, g) for F in (900, 1400, 2100) for g in (-10, 0, 10)]
+"""Loads [N] and cambers [deg] of nine sweeps."""
 
 
 def with_setting(result, **keys):
@@ -301,21 +303,52 @@ def test_a_hysteresis_of_moving_sweeps_is_found_and_left_out_of_the_file(tmp_pat
     assert np.max(np.abs(apart)) < 12.0
 
 
-def test_there_and_back_at_another_camber_shows_no_sense():
-    nuisance = next(n for n in NUISANCES if n.id == "hysteresis")
-    up = np.radians(np.linspace(-8.0, 8.0, 17))
-    there_and_back = np.concatenate([up, up[::-1]])
+def lacking_sense(sweeps):
+    """What the choice says of the sense of sweeps, each of (load in N, camber in deg, angles in deg)."""
+    loads, cambers, angles = zip(*sweeps, strict=True)
+    sizes = [len(alpha) for alpha in angles]
+    points = make_points(
+        np.radians(np.concatenate(angles)),
+        np.radians(np.repeat(np.array(cambers, dtype=float), sizes)),
+        np.repeat(np.array(loads, dtype=float), sizes),
+        p=250e3, V=6.0, phi_t=0.0, sweep=np.repeat(np.arange(len(sweeps)), sizes),
+        sweep_names=tuple(f"s{k}" for k in range(len(sweeps))),
+    )  # fmt: skip
+    return next(n for n in NUISANCES if n.id == "hysteresis").lacking(points)
 
-    def said(alpha, gamma_deg):
-        points = make_points(
-            np.tile(alpha, 2), np.tile(np.radians(gamma_deg), 2), 1400.0, p=250e3, V=6.0, phi_t=0.0,
-            sweep=np.repeat([0, 1], len(alpha)), sweep_names=("a", "b"),
-        )  # fmt: skip
-        return nuisance.lacking(points)
 
-    assert said(there_and_back, np.full(34, 10.0)) == ""
-    assert "up and down" in said(there_and_back, np.repeat([10.0, -10.0], 17))
-    assert "up and down" in said(np.tile(up, 3), np.zeros(51))  # jumps back
+UP = np.linspace(-8.0, 8.0, 17)
+
+
+@pytest.mark.parametrize(
+    ("sweeps", "said"),
+    [
+        ([(1400, 10, np.r_[UP, UP[::-1]])] * 2, ""),  # there and back
+        ([(1400, 0, UP), (1400, 0, UP[::-1])], ""),  # there, and back in another sweep
+        ([(F, g, UP[:: (-1) ** k]) for k, (F, g) in enumerate(NINE)], ""),  # ways alternate over conditions
+        ([(1400, 10, UP), (1400, -10, UP[::-1])], "differ in load, camber"),  # looks like camber thrust
+        ([(F, g, UP[:: 1 if F < 2000 else -1]) for F, g in NINE], "differ in load, camber"),
+        ([(1400, 0, np.tile(UP, 3))] * 2, "same angles up and down"),  # jumps back
+        ([(1400, 0, UP + 9.0), (1400, 0, UP[::-1] - 9.0)], "same angles up and down"),
+    ],
+)
+def test_the_sense_shows_where_conditions_do_not_tell_it(sweeps, said):
+    found = lacking_sense(sweeps)
+    assert (said in found) if said else found == ""
+
+
+def test_the_lag_of_ramps_that_alternate_over_the_conditions_is_off_the_file(tmp_path):
+    """One ramp per load and camber, each the other way than the one before; a tyre that lags by a fixed angle."""
+    content = small_rigs.flat(faults={"hysteresis_deg": 0.25})
+    ways = [small_rigs.SLIP, small_rigs.SLIP[::-1]]
+    content["sweep"] = [
+        {"file": f"ramp_{k}.csv", "load_N": F, "gamma_deg": [g], "alpha_deg": ways[k % 2]}
+        for k, (F, g) in enumerate(NINE)
+    ]
+    result = small_rigs.built(content, tmp_path)
+    assert verdict(result.fit.choice, "hysteresis").modelled
+    value, u = result.fit.rig["hysteresis_deg"]
+    assert value == pytest.approx(0.25, abs=max(4.0 * u, 0.02))
 
 
 @pytest.mark.parametrize("key", ["wear", "warm_up"])
