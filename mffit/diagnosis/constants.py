@@ -41,6 +41,9 @@ NO_NOISE_SHARE = Real(
     "Scatter over the rms reading below which readings come from a simulation; rigs reach 0.001 at best.",
 )
 
+# What a fit leaves
+MOST_OF_A_MISFIT = Real(0.5, "-", "Share of a misfit beyond which the effect that explains it is its cause.")
+
 # Scatter as found
 STATED_NOISE_FACTOR = Real(2.0, "-", "Usual factor (1 sigma) between true and stated uncertainties.")
 SURPRISING_LOG_ODDS = Real(

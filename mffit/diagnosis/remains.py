@@ -78,6 +78,12 @@ class BestEffect:
         """Whether it explains more than the remaining model error does as well."""
         return self.possible and self.gain > self.missed
 
+    @property
+    def explains_most(self) -> bool:
+        """Whether it is an effect of rig or environment that removes most of the misfit, beyond chance."""
+        most = self.best.share > constants.MOST_OF_A_MISFIT
+        return most and self.possible and self.best.effect.kind != "tyre"
+
 
 keys(
     BestEffect,
@@ -191,12 +197,11 @@ class Left(NamedTuple):
         clear = strength > constants.DISTINCT_DIRECTION
         inverse = (axes[:, clear] / strength[clear]) @ axes[:, clear].T / np.outer(size, size)
         explained, amount = float(pull @ inverse @ pull), inverse @ pull
-        chance = float(chdtrc(int(clear.sum()), explained))
         return _Test(
             seen=seen,
             amount=amount,
             u=np.sqrt(np.diag(inverse)),
-            log_chance=math.log(chance) if chance > 0.0 else -math.inf,
+            log_chance=_log_chance(explained, int(clear.sum())),
             share=min(explained / max(self.joint.misfit, 1e-12), 1.0),
             change=found.outside[:, seen] @ amount,
         )
@@ -305,6 +310,16 @@ def _estimate(left: Left, free: Free, by: float, u: float) -> tuple[float, float
         value, spread = left.expected[free.name]
         return value + by * unit, math.sqrt(max((u * unit) ** 2 - spread**2, 0.0))
     return simulation.number(free.name, left.points) + by * unit, u * unit
+
+
+def _log_chance(square: float, n: int) -> float:
+    """Natural logarithm of the probability of a larger chi-square of ``n`` numbers, also where that underflows."""
+    chance, half = float(chdtrc(n, square)), 0.5 * square
+    if chance > 0.0:
+        return math.log(chance)
+    return (
+        (0.5 * n - 1.0) * math.log(half) - half - math.lgamma(0.5 * n)
+    )  # the leading term, exact to n / square
 
 
 def _sigma(log_chance: float) -> float:

@@ -56,14 +56,17 @@ def judged(
         sideslip_zeros=measured.sideslip_zeros,
         drift=measured.drift,
     )
-    effect = left.effect is not None and left.effect.significant
+    most = left.effect is not None and left.effect.explains_most
+    effect = most or (left.effect is not None and left.effect.significant)
     against = sorted(fitted.doubts, key=lambda doubt: -doubt.ratio)
+    blamed = [] if most else against  # many sweeps look odd that one effect explains
     finished = replace(
         finished,
         against=tuple(against),
-        cause=_cause([one for one in against if one.looks or not effect], left),
+        cause=_cause([one for one in blamed if one.looks or not effect], left),
         cause_is_certain=bool(against or effect),
-        undeclared="" if against or not effect else _undeclared(left),
+        cause_is_most=most,
+        undeclared="" if blamed or not effect else _undeclared(left),
     )
     if against:
         left = replace(left, sweep=OddSweep(against[0].sweep, against[0].looks))

@@ -98,6 +98,7 @@ class FinishedFit(ReadOnlyArrays, JudgedMeasurement):
     cause: str = ""  #: the effect that would explain most of the residuals, in words
     undeclared: str = ""  #: key of [rig] that declares the cause as absent; empty if none does
     cause_is_certain: bool = False  #: whether neither chance nor smooth model error explains the residuals
+    cause_is_most: bool = False  #: whether the cause explains most of the residuals, of stated noise or not
     held: tuple[HeldNumber, ...] = ()
     rig: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Fitted rig errors and environment terms: (value, standard uncertainty)."""
@@ -461,8 +462,8 @@ def far_below_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     sentence="the readings show more than was declared and fitted: {cause}; run mffit diagnose",
 )
 def effect_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Score test of every effect beside the fitted numbers, where the noise is stated; their number is accounted for."""
-    if _effect_is_left(fit) and not fit.undeclared:
+    """Score test of every effect beside the fitted numbers, where noise is stated or one effect explains most of the misfit."""
+    if _effect_is_left(fit) and not (fit.undeclared and _states(fit)):
         yield {"cause": fit.cause}
 
 
@@ -474,7 +475,7 @@ def effect_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 )
 def declared_absent(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """The same test of a rig error that has a key of its own, declared as exactly known."""
-    if _effect_is_left(fit) and fit.undeclared:
+    if _effect_is_left(fit) and fit.undeclared and _states(fit):
         yield {"cause": fit.cause, "key": fit.undeclared}
 
 
@@ -524,7 +525,8 @@ def judge(found: JudgedMeasurement) -> Trust:
         return Trust(said(*rules, doubtful=False), said(*rules, doubtful=True))
     reasons = said(*OF_TRUST, doubtful=False)
     doubts = said(*OF_TRUST, doubtful=True)
-    limited = tuple(name for name in found.used if found.beyond_scatter(name))
+    # What one effect explains is no limit of the formula.
+    limited = tuple(name for name in found.used if found.beyond_scatter(name) and not found.cause_is_most)
     return Trust(reasons, doubts, over_noise=found.over_noise, limited=limited)
 
 
@@ -552,9 +554,14 @@ OF_TRUST = (
 
 
 def _effect_is_left(fit: FinishedFit) -> bool:
-    """Whether residuals with stated noise contain a certain effect that no rule on the misfit has reported."""
+    """Whether a certain effect that no rule on the misfit has reported is in the residuals, or is most of them without stated noise."""
     said = any(any(rule.find(fit)) for rule in (above_noise, sweep_above_noise))
-    return fit.cause_is_certain and any(fit.misfit(name).n for name in fit.used) and not said
+    return fit.cause_is_certain and (_states(fit) or fit.cause_is_most) and not said
+
+
+def _states(fit: FinishedFit) -> bool:
+    """Whether a used reading states its noise."""
+    return any(fit.misfit(name).n for name in fit.used)
 
 
 def _blamed_by(rule: Rule, fit: FinishedFit) -> bool:

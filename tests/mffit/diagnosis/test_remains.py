@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 from small_rigs import LEAN, built, disc, simulated, truth
 
 import mffit
 from mffit import config as configuration
-from mffit.diagnosis.remains import Left, best_effect
+from mffit.diagnosis.remains import Left, _log_chance, best_effect
 from mffit.effects import CATALOG
 from mffit.fit.fitted import left_by
 from mffit.linearised import LinearisedFit, linearised
@@ -145,3 +146,9 @@ def test_a_coefficient_that_was_set_wrong_is_named_with_its_true_size(tmp_path):
     assert (found.best.effect.id, found.significant) == ("load-cornering-stiffness", True)
     value, u = found.best.numbers["PKY2"]
     assert abs(value - true) < 3.0 * u < 0.3
+
+
+@pytest.mark.parametrize("sigma", [3.0, 30.0, 60.0, 300.0])
+def test_a_chance_too_small_for_a_number_keeps_its_logarithm(sigma):
+    assert _log_chance(sigma**2, 1) == pytest.approx(np.log(2.0) + norm.logsf(sigma), rel=1e-6)
+    assert _log_chance(sigma**2, 2) == pytest.approx(-0.5 * sigma**2)

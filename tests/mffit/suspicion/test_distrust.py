@@ -119,6 +119,16 @@ def test_a_doubt_names_the_worst_sweep_and_what_would_explain_it():
     assert "no known effect explains it" in said
 
 
+@pytest.mark.parametrize("undeclared", ["", "u_alpha_0_deg"])
+def test_an_effect_behind_most_of_the_misfit_is_a_doubt_without_a_stated_noise(undeclared):
+    more = {"u": np.nan, "cause": "a lag of the tyre", "cause_is_certain": True, "undeclared": undeclared}
+    assert judged(noise(), **more).doubts == ()
+    found = judged(noise(), **more, cause_is_most=True)
+    assert found.trusted
+    (said,) = found.doubts
+    assert "a lag of the tyre" in said
+
+
 def test_the_sweeps_with_most_of_the_misfit_are_named_worst_first():
     off = noise()
     off[SWEEP == 7] *= 20.0
