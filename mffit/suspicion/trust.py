@@ -554,7 +554,7 @@ OF_TRUST = (
 
 
 def _effect_is_left(fit: FinishedFit) -> bool:
-    """Whether a certain effect that no rule on the misfit has reported is in the residuals, or is most of them without stated noise."""
+    """Whether an effect that no rule on the misfit has reported is certain, and where no noise is stated explains most of it."""
     said = any(any(rule.find(fit)) for rule in (above_noise, sweep_above_noise))
     return fit.cause_is_certain and (_states(fit) or fit.cause_is_most) and not said
 
