@@ -241,6 +241,10 @@ def against_free_rolling(
                     out[k] = _with(out[k], over_road(out[k].kappa, form.over))
                 readings = readings._replace(kappa=over_road(readings.kappa, form.over))
                 zero = slip_zero(_with_free_wheels(readings, zero)) or zero
+        if heading == FROM_SPEEDS:  # its reference is a mean radius, which nothing but Fx = 0 corrects
+            for k in rows:
+                out[k] = _less(out[k], zero)
+            continue
         if with_errors and against is None and not zero.falls:
             continue
         said = sentence(heading, against, zero)
@@ -251,8 +255,7 @@ def against_free_rolling(
             if against is None:
                 taken_off |= {sweeps[k].file: (zero, said) for k in rows}
             for k in rows:
-                shift = zero.at(readings_of(out[k]))
-                out[k] = _with(out[k], (1.0 + out[k].kappa) / (1.0 + shift) - 1.0)
+                out[k] = _less(out[k], zero)
     return tuple(out), SlipRemarks(tuple(notes), tuple(warnings), taken_off)
 
 
@@ -292,6 +295,11 @@ def _stated(config: Config) -> dict[str, _Stated]:
 def _with(sweep: Sweep, kappa: np.ndarray) -> Sweep:
     """The sweep with another slip, which its table shows beside the one as read."""
     return replace(sweep, kappa=kappa, table=sweep.table.assign(kappa_free_rolling=kappa))
+
+
+def _less(sweep: Sweep, zero: SlipZero) -> Sweep:
+    """The sweep with slip against the radius at which the zero finds no force."""
+    return _with(sweep, (1.0 + sweep.kappa) / (1.0 + zero.at(readings_of(sweep))) - 1.0)
 
 
 def _wheel_speed(sweeps: Sequence[Sweep]) -> np.ndarray:
@@ -410,7 +418,7 @@ def readings_of(rows: MeasuredRows) -> Driven:
 
 
 def _conditions(of: Driven, middle: Driven) -> np.ndarray:
-    """Columns (n, k) of a linear model of the zero: load and pressure to second order, camber, sideslip, squared speed.
+    """Columns (n, k) of a linear model of the zero: load, pressure, camber and sideslip to second order, squared speed.
 
     The speed term stands for the growth of the free radius with the square of the speed.
     """
@@ -428,6 +436,7 @@ def _conditions(of: Driven, middle: Driven) -> np.ndarray:
         camber**2,
         camber * load,
         np.abs(of.alpha),
+        of.alpha**2,
         np.nan_to_num((of.V / middle.V) ** 2 - 1.0) if middle.V > 0.0 else nothing,
     )
     return np.column_stack(columns)
@@ -445,7 +454,7 @@ def _varied(of: Driven) -> np.ndarray:
     speed = bool(np.any(np.isfinite(of.V))) and several(of.V, SPEED)
     second = (pressure, pressure and load, pressure)
     return np.array(
-        (True, load, load, *second, camber, camber, camber and load, sideslip, speed), dtype=float
+        (True, load, load, *second, camber, camber, camber and load, sideslip, sideslip, speed), dtype=float
     )
 
 
@@ -494,7 +503,7 @@ def _with_slip(sweeps: Sequence[Sweep], unloaded_radius: float) -> tuple[tuple[S
         return tuple(out), ()
     return tuple(out), (
         f"{some(list(dict.fromkeys(files)))}: no slip was recorded, but wheel and road speed show that the wheel was driven or "
-        "braked; slip follows from both",
+        "braked; slip follows from both, with its zero at Fx = 0 where Fx was measured",
     )
 
 

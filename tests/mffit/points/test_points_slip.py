@@ -79,6 +79,17 @@ def test_every_condition_is_a_sweep_of_slip_with_all_channels(read):
     assert not any("lag" in sentence for sentence in found.warnings)
 
 
+def test_slip_from_speeds_is_zero_where_the_force_is(read):
+    """The mean radius of all sweeps is 0.0023 off that of the wheel straight ahead, as its speed follows the road's at any angle."""
+    found = read({name: heading for name, heading in COLUMNS.items() if name != "kappa"})
+    p = found.points
+    straight = np.abs(p.alpha) < np.radians(1.0)
+    truth = p.omega * 0.225 / p.V - 1.0
+    assert np.ptp(p.kappa[straight]) > 0.2
+    assert np.max(np.abs(p.kappa - truth)[straight]) < 6e-4
+    assert any("zero at Fx = 0" in said for said in (*found.notes, *found.warnings))
+
+
 def test_a_fast_sweep_is_averaged_over_no_more_of_slip_than_of_sideslip():
     """At a slip of 0.35 per second a tenth of a second would be 0.035; at 0.05 per second it is the tenth of a second."""
     for rate, samples in ((0.35, 2), (0.05, 10)):

@@ -48,3 +48,17 @@ def test_a_freely_rolling_wheel_shows_no_zero_of_slip():
     """Its recorded slip is noise, and Fx over it has no meaning."""
     driven = readings(0.05)
     assert slip_zero(driven._replace(kappa=-0.9999 + 1e-3 * driven.kappa)) is None
+
+
+def test_a_zero_that_curves_with_sideslip_is_found_straight_ahead():
+    """Most readings roll freely through 12 deg, as those of a wheel whose speed over the road's does not follow the angle."""
+    rng = np.random.default_rng(5)
+    alpha = np.concatenate([rng.uniform(-0.2, 0.2, 600), np.zeros(200)])
+    force = np.concatenate([np.zeros(600), rng.uniform(-1.0, 1.0, 200)])
+    n = len(alpha)
+    zero = 1.0 / np.cos(alpha) - 1.0 - 0.003
+    fixed = np.full(n, 1500.0)
+    driven = Driven(
+        zero + 0.03 * force, force * fixed, fixed, alpha, 0.0 * fixed, fixed, np.full(n, np.nan), fixed
+    )
+    np.testing.assert_allclose(slip_zero(driven).at(driven), zero, atol=3e-4)
