@@ -80,7 +80,7 @@ def test_every_condition_is_a_sweep_of_slip_with_all_channels(read):
 
 
 def test_slip_from_speeds_is_zero_where_the_force_is(read):
-    """The mean radius of all sweeps is 0.0023 off that of the wheel straight ahead, as its speed follows the road's at any angle."""
+    """The mean radius of all sweeps is 0.0023 off that of the wheel straight ahead: its speed follows the road's at any angle."""
     found = read({name: heading for name, heading in COLUMNS.items() if name != "kappa"})
     p = found.points
     straight = np.abs(p.alpha) < np.radians(1.0)
