@@ -64,6 +64,11 @@ CAMBER_OF_SLOPES = Real(
     "secant.",
     "docs/method.md",
 )
+LEAST_SHARE_OF_A_SENSE = Real(
+    0.25,
+    "-",
+    "Share of a sweep's points with the angle moving in one sense below which it has not this sense.",
+)
 SAME_SIDESLIP = Real(0.05, "deg", "Sideslip angles within this are one set-point: zeros, mirrored points.")
 NAMED_IN_SENTENCE = Count(3, "-", "Most places of a kind that a sentence names; it counts the others.")
 LARGEST_PLAIN_NUMBER = Real(1e7, "-", "Larger numbers are written with a power of ten.")

@@ -155,13 +155,6 @@ SPIN_CORRECTION_OF_MODEL = Real(
     "Standard uncertainty of the formula, over the difference of the cornering stiffnesses without and with spin.",
 )
 
-# Numbers of the tyre's state and of the rig
-LEAST_SHARE_OF_A_SENSE = Real(
-    0.25,
-    "-",
-    "Share of a sweep's points with the angle moving in one sense below which it has not this sense.",
-)
-
 # Relaxation lengths from steps
 LEAST_MOVE_OF_A_STEP = Real(
     0.02,

@@ -3,6 +3,7 @@
 from mffit.measured.alignment import align
 from mffit.measured.direct import adding_to_camber, at_the_axis, measure
 from mffit.measured.evidence import odd_alpha
+from mffit.measured.one_way import OneWayLag
 from mffit.measured.radii import RadiusReading, measured_path_radius, radius_readings
 from mffit.measured.result import (
     Alignment,
@@ -21,6 +22,7 @@ __all__ = [
     "Drift",
     "LoadResult",
     "Measured",
+    "OneWayLag",
     "RadiusReading",
     "SetupResult",
     "SetupScatter",

@@ -9,6 +9,12 @@ GUESSED_STIFFNESS_U = Real(
 )
 AXIS_RESOLUTION = Real(0.01, "deg", "Smallest angle by which a sideslip axis can usually be turned.")
 
+USUAL_RELAXATION = Real(
+    1.2,
+    "-",
+    "Usual lateral relaxation length over the unloaded radius: tyres have 0.5 of motorcycles to 2 of cars.",
+)
+
 PARABOLA_SIDESLIP = Real(1.2, "deg", "Sideslip within which a parabola describes the side force to a newton.")
 POINTS_FOR_PARABOLA = Count(
     5, "-", "Fewest angles near zero from which a parabola gives the zero better than a mean."

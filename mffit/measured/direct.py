@@ -37,6 +37,7 @@ from mffit.measured.epsilon import (
     stiffer_in_camber,
 )
 from mffit.measured.evidence import DirectEvidence, evidence_of, rest_of_play
+from mffit.measured.one_way import one_way_lag
 from mffit.measured.radii import effective_radius_at
 from mffit.measured.result import (
     NO_FIT,
@@ -110,6 +111,7 @@ def measure(
         setup_scatter=evidence.scatter,
         sideslip_zeros=evidence.zeros,
         drift=evidence.drift,
+        lag=one_way_lag(points, config.tyre.unloaded_radius),
         misaligned_setups=_misaligned_setups(evidence, on_disc) if on_disc else {},
         axis_off=on_disc is not None and on_disc.axis_off(left),
         camber_skew=evidence.skew,

@@ -14,6 +14,7 @@ from mffit.brief import Brief
 from mffit.constants import COVERAGE_FACTOR_95, FALSE_ALARM, USUAL_CORNERING_STIFFNESS
 from mffit.made import Made
 from mffit.measured import constants
+from mffit.measured.one_way import OneWayLag
 from mffit.measured.uncertain import Contribution, Expanded, expanded
 from mffit.quantities import CONDITIONS, DIRECT, KEYS
 from tir import Quantity
@@ -272,6 +273,7 @@ class Measured(Brief):
     setup_scatter: SetupScatter | None = None  #: None without repeated set-ups
     sideslip_zeros: tuple[SideslipZeros, ...] = ()  #: of every set-up with several zeros in both directions
     drift: Drift | None = None  #: None without repeated conditions, or if the temperature varies
+    lag: OneWayLag | None = None  #: of moving sweeps that all go one way
     misaligned_setups: Mapping[str, float] = field(default_factory=dict)
     """By set-up whose alpha_M exceeds the alignment uncertainty, alpha_M at the nominal load [rad]."""
     axis_off: bool = False  #: whether moreover the misalignment of the axis is clearly not zero

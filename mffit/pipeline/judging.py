@@ -55,6 +55,7 @@ def judged(
         radius_counts=not follows_path(config),
         sideslip_zeros=measured.sideslip_zeros,
         drift=measured.drift,
+        lag=measured.lag,
     )
     most = left.effect is not None and left.effect.explains_most
     effect = most or (left.effect is not None and left.effect.significant)

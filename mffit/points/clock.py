@@ -1,4 +1,4 @@
-"""Times of samples: correction of rounded times, the common clock of several recordings, and the distance rolled."""
+"""Times of samples: correction of rounded times, the common clock of several recordings; distance rolled, sense of a sweep."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from mffit.constants import SAME_SIDESLIP
+from mffit.points.points import Points
 from mffit.sweeps import Sweep
 
 
@@ -49,3 +51,14 @@ def with_common_clock(sweeps: Sequence[Sweep]) -> list[Sweep]:
 def rolled_distance(time: np.ndarray, V: np.ndarray) -> np.ndarray:
     """Distance (n,) rolled since the first sample [m], at speeds ``V`` (n,)."""
     return np.asarray(np.r_[0.0, np.cumsum(np.diff(time) * 0.5 * (V[1:] + V[:-1]))])
+
+
+def sense(points: Points) -> np.ndarray:
+    """Sense (n,) of the sideslip's motion along its sweep: 1 up, -1 down, 0 held."""
+    out = np.zeros(len(points))
+    for k in np.unique(points.sweep):
+        rows = np.flatnonzero(points.sweep == k)
+        if len(rows) > 1:
+            moving = np.gradient(points.alpha[rows])
+            out[rows] = np.where(np.abs(moving) > SAME_SIDESLIP.rad, np.sign(moving), 0.0)
+    return out

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.constants import SAME_SIDESLIP
 from mffit.points import Points, main_path
+from mffit.points.clock import sense
 from mffit.rig import constants
 
 
@@ -93,17 +93,6 @@ def reference_speed(points: Points) -> float:
     """The most frequent speed of the data [m/s], to 0.1 m/s."""
     values, counts = np.unique(np.round(points.V[np.isfinite(points.V)], 1), return_counts=True)
     return float(values[counts.argmax()])
-
-
-def sense(points: Points) -> np.ndarray:
-    """Sense (n,) of the sideslip's motion along its sweep: 1 up, -1 down, 0 held."""
-    out = np.zeros(len(points))
-    for k in np.unique(points.sweep):
-        rows = np.flatnonzero(points.sweep == k)
-        if len(rows) > 1:
-            moving = np.gradient(points.alpha[rows])
-            out[rows] = np.where(np.abs(moving) > SAME_SIDESLIP.rad, np.sign(moving), 0.0)
-    return out
 
 
 def distance_km(points: Points) -> np.ndarray:

@@ -73,6 +73,10 @@ LEAST_LOADED = Real(
     "Share of a file's largest load below which force over load says nothing: offsets of the load cell rule there.",
 )
 
+LAG_IN_DOUBT = Real(
+    0.1, "deg", "Shift of the angle by the lag of a usual tyre that is asked for: axes are aligned as well."
+)
+
 # Every sweep against all others; shares are errors of a prediction over the usual size of the channel
 SHARE_OF_WORST_POINTS = Real(
     0.2,

@@ -27,7 +27,7 @@ from mffit.constants import (
     NAMED_IN_SENTENCE,
     ODD_SWEEP_RATIO,
 )
-from mffit.measured import Drift, LoadResult, SideslipZeros
+from mffit.measured import Drift, LoadResult, OneWayLag, SideslipZeros
 from mffit.measured.result import path_in_words
 from mffit.points import Points
 from mffit.points.noise import OverNoise, estimated_noise, over_noise, stating
@@ -82,6 +82,7 @@ class JudgedMeasurement:
     radius_counts: bool = True  #: False if r_e was measured along the path, so that an error of R cancels
     sideslip_zeros: tuple[SideslipZeros, ...] = ()  #: of every set-up with several zeros in both directions
     drift: Drift | None = None  #: drift between sweeps, if the temperature is unknown
+    lag: OneWayLag | None = None  #: of moving sweeps that all go one way
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -392,6 +393,22 @@ def drift_between_sweeps(measured: JudgedMeasurement) -> Iterator[dict[str, Any]
 
 
 @of_measurement(
+    id="sweeps-of-one-way",
+    outcome=Outcome.WARNED,
+    sentence="all moving sweeps of sideslip go one way, so that no reading shows by how much the force lags behind the angle: a "
+    "usual tyre, with a relaxation length of {length:.2f} m, shifts them by {angle:.2f} deg{force}; the uncertainty holds that; "
+    "sweep the other way, too, or slower over the road",
+)
+def sweeps_of_one_way(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
+    """Lag of a usual tyre where no sweep goes the other way, if it is more than an axis is usually misaligned."""
+    lag = measured.lag
+    if lag is not None and abs(lag.angle) > constants.LAG_IN_DOUBT.rad:
+        C = None if measured.nominal is None else measured.nominal.C_alpha
+        force = "" if C is None else f", {abs(C.value * lag.angle):.0f} N at {measured.nominal.load:.0f} N"
+        yield {"length": lag.length, "angle": abs(math.degrees(lag.angle)), "force": force}
+
+
+@of_measurement(
     id="unpublished-camber-reduction",
     outcome=Outcome.WARNED,
     sentence="eps_gamma = {value:.3f} +- {u:.3f} is outside everything published ({published}); likeliest causes: {causes}",
@@ -539,6 +556,7 @@ OF_TRUST = (
     limit_broken,
     zeros_contradict,
     drift_between_sweeps,
+    sweeps_of_one_way,
     unpublished,
     bound_against_data,
     hand_against_data,

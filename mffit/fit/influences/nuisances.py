@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, UPRIGHT, VISIBLE_TEMPERATURE
-from mffit.fit import constants
+from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, LEAST_SHARE_OF_A_SENSE, UPRIGHT, VISIBLE_TEMPERATURE
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber
 from mffit.points import Points, levels
@@ -109,13 +108,13 @@ def _senses(points: Points) -> str:
     sizes = np.bincount(part)
     for way in (1.0, -1.0):
         # A single jump back to repeat a sweep at another load or camber is not a sweep down.
-        rare = np.bincount(part, moving == way) < constants.LEAST_SHARE_OF_A_SENSE * sizes
+        rare = np.bincount(part, moving == way) < LEAST_SHARE_OF_A_SENSE * sizes
         moving[(moving == way) & rare[part]] = 0.0
     low, high = zip(*(_middle(points.alpha[moving == way]) for way in (1.0, -1.0)), strict=True)
     if not max(low) < min(high):
         return "no sweeps go through the same angles up and down"
     moved = moving != 0.0
-    q = constants.LEAST_SHARE_OF_A_SENSE
+    q = LEAST_SHARE_OF_A_SENSE
     if _beyond_conditions(points, moving, moved) < 4.0 * q * (1.0 - q) * np.median(sizes):
         return "sweeps up and sweeps down differ in load, camber, pressure or set-up, whose effect theirs looks like"
     return ""

@@ -148,7 +148,11 @@ def _of_setups(
         if scatter is not None and name == "F0_N":
             u = math.hypot(u, scatter.excess)
         for setup in setups:
-            off = abs(_misaligned(measured, setup)) if name == SIDESLIP_ZERO else 0.0
+            off = 0.0
+            if name == SIDESLIP_ZERO:
+                off = abs(_misaligned(measured, setup))
+                # A lag that no sweep the other way shows moves the readings as the axis does.
+                u = math.hypot(u, math.degrees(measured.lag.angle) if measured.lag else 0.0)
             reach = constants.RIG_ERROR_REACH if setup else constants.FLAT_TRACK_ZERO_REACH
             found.append(_number(name, Declaration(value, max(u, off)), setup, reach))
     return tuple(found)

@@ -22,7 +22,7 @@ RIG = SimpleNamespace(
 )
 CONFIG = SimpleNamespace(rig=RIG, tyre=SimpleNamespace(nominal_load=1500.0), rolling_radius=())
 MEASURED = SimpleNamespace(misaligned=False, alpha_M=None, per_load=(), C_alpha=None, setup_scatter=None, camber_skew=None,
-    misaligned_setups={})  # fmt: skip
+    misaligned_setups={}, lag=None)  # fmt: skip
 
 
 @pytest.fixture
