@@ -11,28 +11,15 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import chdtrc, chdtri, stdtrit
 
-from mffit.constants import EXPLAINED_SHARE, FALSE_ALARM, STRAIGHT
+from mffit.constants import EXPLAINED_SHARE, FALSE_ALARM
 from mffit.points import constants, levels
-from mffit.points.noise import neighbour_noise, stating
+from mffit.points.like import MeanReadings, conditions, mean_readings, noise, rolling
 from mffit.points.points import Points, of_si
 from mffit.quantities import CONDITIONS
 from mffit.scatter import ALARM, rms
 
 LABELS = {"Fz": ("Fz_N", levels.LOAD), "p": ("p_kPa", levels.PRESSURE), "gamma": ("gamma_deg", levels.CAMBER)}
 """By setting, its column and its levels."""
-
-
-class MeanReading(NamedTuple):
-    """Mean of the side forces of a sweep at one combination of the other settings."""
-
-    Fy: float  #: [N]
-    Fz: float  #: [N]
-    alpha: float  #: [rad]
-    slope: float  #: dFy/dalpha [N/rad]; 0 if the sweep does not show it
-    u: float  #: standard error of Fy [N]
-
-
-MeansOfSweep = Mapping[tuple[int, ...], MeanReading]
 
 
 class OtherLabel(NamedTuple):
@@ -72,8 +59,8 @@ def other_labels(points: Points) -> tuple[OtherLabel, ...]:
     seen from other sweeps at it, or, without any, from what the change of label does under other conditions; beyond chance, with
     every label of every sweep counted as a candidate, and beyond what repeated sweeps differ by.
     """
-    used = points.select(points.free_rolling & np.isfinite(points.Fy) & (points.Fz > 0.0), with_table=False)
-    u = np.where(stating(used.u_Fy), used.u_Fy, neighbour_noise(used, used.Fy))
+    used = rolling(points)
+    u = noise(used)
     found: list[OtherLabel] = []
     while len(np.unique(used.sweep)) > 2:
         labelled = [_Labelled.of(setting, used, u) for setting in LABELS]
@@ -152,12 +139,12 @@ class _Labelled:
         if len(values) < 2:
             return cls(setting, values, {}, {})
         keys = _keys(setting, points)
-        swept: dict[int, MeansOfSweep] = {}
+        swept: dict[int, MeanReadings] = {}
         labels: dict[int, int] = {}
         for k in np.unique(points.sweep).tolist():
             own = np.flatnonzero(points.sweep == k)
             if len(np.unique(label[own])) == 1:  # a sweep over this setting has no label of it
-                swept[k], labels[k] = _readings(points, own, keys, u), int(label[own[0]])
+                swept[k], labels[k] = mean_readings(points, own, keys, u), int(label[own[0]])
         pairs = {
             (a, b): found
             for a, b in itertools.combinations(swept, 2)
@@ -225,46 +212,19 @@ class _Labelled:
 
 
 def _keys(setting: str, points: Points) -> np.ndarray:
-    """Per point (n, 8) what must be alike to compare sweeps under a setting; the sideslip is the third."""
-    others = [
-        levels.labels_of_setting(getattr(points, name), points.sweep, one)
-        for name, (_, one) in LABELS.items()
-        if name != setting
-    ]
-    step = np.round(points.alpha / STRAIGHT.rad).astype(int)
-    path = np.unique(points.phi_t, return_inverse=True)[1]
+    """Per point (n, 8) what must be alike to compare sweeps under a setting: the labels of the others first, sideslip last."""
+    others = [(name, kind) for name, (_, kind) in LABELS.items() if name != setting]
+    alike = conditions(points, others)
     rising = np.zeros(len(points), dtype=int)
     for k in np.unique(points.sweep[points.continuous]):
         rows = np.flatnonzero((points.sweep == k) & points.continuous)
         if len(rows) > 1:
             rising[rows] = np.sign(np.gradient(points.alpha[rows]))
-    return np.column_stack([*others, step, points.direction, points.mount, path, points.setup, rising])
-
-
-def _readings(points: Points, rows: np.ndarray, keys: np.ndarray, u: np.ndarray) -> MeansOfSweep:
-    """The mean readings of a sweep by its other settings."""
-    out: dict[tuple[int, ...], MeanReading] = {}
-    for group in levels.rows_of_equal(keys[rows]):
-        own = rows[group]
-        Fy, Fz, alpha = (float(np.mean(getattr(points, name)[own])) for name in ("Fy", "Fz", "alpha"))
-        out[tuple(keys[own[0]].tolist())] = MeanReading(
-            Fy, Fz, alpha, 0.0, float(rms(u[own])) / np.sqrt(len(own))
-        )
-    for key, one in out.items():
-        beside = [out[near] for near in (_next(key, -1), _next(key, 1)) if near in out]
-        if beside:
-            low, high = min((one, *beside), key=lambda r: r.alpha), max((one, *beside), key=lambda r: r.alpha)
-            out[key] = one._replace(slope=(high.Fy - low.Fy) / (high.alpha - low.alpha))
-    return out
-
-
-def _next(key: tuple[int, ...], by: int) -> tuple[int, ...]:
-    """The key of the next step of sideslip, which is its third from the front."""
-    return (*key[:2], key[2] + by, *key[3:])
+    return np.column_stack([alike[:, : len(others)], points.setup, rising, alike[:, len(others) :]])
 
 
 def _differences(
-    setting: str, first: MeansOfSweep, second: MeansOfSweep
+    setting: str, first: MeanReadings, second: MeanReadings
 ) -> Iterator[tuple[float, float, float]]:
     """Difference of two sweeps [N], its standard error, and the force, at the settings that both have."""
     for key in first.keys() & second.keys():
@@ -274,7 +234,7 @@ def _differences(
         yield moved - a.Fy, float(np.hypot(a.u, scale * b.u)), a.Fy
 
 
-def _compared(setting: str, first: MeansOfSweep, second: MeansOfSweep) -> _Compared | None:
+def _compared(setting: str, first: MeanReadings, second: MeanReadings) -> _Compared | None:
     """Two sweeps; None with too few common readings, without noise, or of a dead channel."""
     common = first.keys() & second.keys()
     if len(common) < constants.FEWEST_COMPARED_LABELS:

@@ -403,8 +403,9 @@ def sweeps_of_one_way(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     """Lag of a usual tyre where no sweep goes the other way, if it is more than an axis is usually misaligned."""
     lag = measured.lag
     if lag is not None and abs(lag.angle) > constants.LAG_IN_DOUBT.rad:
-        C = None if measured.nominal is None else measured.nominal.C_alpha
-        force = "" if C is None else f", {abs(C.value * lag.angle):.0f} N at {measured.nominal.load:.0f} N"
+        row, force = measured.nominal, ""
+        if row is not None and row.C_alpha is not None:
+            force = f", {abs(row.C_alpha.value * lag.angle):.0f} N at {row.load:.0f} N"
         yield {"length": lag.length, "angle": abs(math.degrees(lag.angle)), "force": force}
 
 
