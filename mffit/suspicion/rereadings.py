@@ -42,7 +42,13 @@ class Mistake:
     remedy: str  #: how to correct it
     undone: Callable[[Points, Signs], Points]  #: the points corrected for the mistake
     beyond_doubt: bool = True  #: False if a sound tyre or rig can look almost the same
-    factor: float = 1.0  #: of a wrong unit, at least 1
+    units: tuple[str, str] | None = None  #: the wrong unit and the expected one, of a mistaken unit
+
+    @property
+    def factor(self) -> float:
+        """Of a wrong unit, at least 1; 1 for other mistakes."""
+        size = 1.0 if self.units is None else factor(*self.units)
+        return max(size, 1.0 / size)
 
     def certain(self, undone: Points, others: Points, *, by_formula: bool) -> bool:
         """Whether no formula of a sound tyre is as wrong as this mistake.
@@ -68,8 +74,8 @@ def _swapped(points: Points, signs: Signs, *, fields: tuple[str, str]) -> Points
     return points.replace(**{one: sign * getattr(points, other), other: sign * getattr(points, one)})
 
 
-def _converted(points: Points, _: Signs, *, field: str, by: float) -> Points:
-    return points.replace(**{field: by * getattr(points, field)})
+def _converted(points: Points, _: Signs, *, field: str, unit: str, expected: str) -> Points:
+    return points.replace(**{field: factor(unit, expected) * getattr(points, field)})
 
 
 def _reversed(looks: str, column: str, remedy: str, *fields: str, beyond_doubt: bool = True) -> Mistake:
@@ -83,13 +89,12 @@ def _of_sign(field: str, column: str, what: str) -> Mistake:
 
 
 def _in_unit(field: str, column: str, what: str, *, unit: str, expected: str) -> Mistake:
-    size = factor(unit, expected)
     return Mistake(
         looks=f"{what} in {unit}",
         column=column,
         remedy=f'write {expected}, or {column} = {{ column = "{column}", unit = "{unit}" }} under [sweep.columns]',
-        undone=partial(_converted, field=field, by=size),
-        factor=max(size, 1.0 / size),
+        undone=partial(_converted, field=field, unit=unit, expected=expected),
+        units=(unit, expected),
     )
 
 
