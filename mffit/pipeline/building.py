@@ -121,7 +121,11 @@ def _result(
     trust, left = judged(config, reading.points, measured, fitted, of_uses)
     said_of_trust = said(trust)  # the doubts of the reading and of single sweeps are among the warnings
     explained = (one.sentence for one in fitted.doubts if one.looks)
-    trust = replace(trust, doubts=(*reading.doubts, *explained, *trust.doubts))
+    trust = replace(
+        trust,
+        reasons=(*reading.reasons, *trust.reasons),
+        doubts=(*reading.doubts, *explained, *trust.doubts),
+    )
     annotated = annotator(config, read.made, measured, fitted, trust)
     missed, table = _model_error(reading.points, fitted, files[fitting.fitted_use(of_uses)])
     if trust.trusted:

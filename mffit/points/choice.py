@@ -120,7 +120,7 @@ def _too_short(settings: SteadySettings, begin: int, end: int) -> str:
         return f"only {max(end - begin, 0)} samples after the transient"
     seconds = settings.time[end - 1] - settings.time[begin]
     rolled = seconds * float(np.median(np.abs(settings.V[begin:end])))
-    long = seconds >= constants.SHORTEST_STRETCH or rolled >= constants.SHORTEST_ROLL
+    long = seconds >= constants.SHORTEST_STRETCH or rolled >= constants.TRANSIENT_ROLL
     return "" if long else f"only {seconds:.1f} s steady"
 
 

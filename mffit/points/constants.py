@@ -48,12 +48,16 @@ COMPARED_APART = Real(
     "s",
     "Time between readings that are compared: a setting that changed, a sensor that is stuck shows over it.",
 )
-SHORTEST_STRETCH = Real(2.0, "s", "Shortest stretch after its transient.")
-SHORTEST_ROLL = Real(
-    10.0, "m", "Rolling after its transient that makes a shorter plateau long enough: five turns of a wheel."
+SHORTEST_STRETCH = Real(
+    2.0, "s", "Stretch after its transient that is long enough although the wheel hardly rolls."
 )
 FEWEST_POINTS = Count(8, "-", "Fewest samples or points that show a level, a line or a noise.")
-TRANSIENT_ROLL = Real(2.0, "m", "Distance dropped after a change: three to ten relaxation lengths.")
+TRANSIENT_ROLL = Real(
+    2.0,
+    "m",
+    "Distance dropped after a change: three to ten relaxation lengths; what rests as long again, a turn of a wheel, is long "
+    "enough for a mean.",
+)
 SMALLEST_SWEEP_OF_SLIP = Real(
     0.05,
     "-",
@@ -69,6 +73,9 @@ MOST_OF_WAY = Real(
     "-",
     "Share of the way of the settings by which a rig that rests half of the time is told from one that moves all the time: it "
     "is made in half of that share of the time.",
+)
+SWEPT_LEVELS = Count(
+    4, "-", "Levels of an angle that recordings cross to be a test of it, without which a file is worthless."
 )
 GAP_OVER_STEP = Real(5.0, "-", "Smallest gap in time over the usual step.")
 BLOCKS_OF_STRETCH = Count(10, "-", "Blocks of a stretch; leading ones are compared with its second half.")

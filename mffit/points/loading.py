@@ -51,6 +51,7 @@ class Reading(NamedTuple):
     taken_off: tuple[str, ...] = ()  #: sentences about undeclared rig errors that were subtracted
     as_read: Points | None = None  #: the points before this subtraction; None without any
     doubts: tuple[str, ...] = ()  #: warnings for which a result of these points is in doubt
+    reasons: tuple[str, ...] = ()  #: warnings for which a result of these points is not to be trusted
 
 
 def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str, ...]]:
@@ -79,11 +80,14 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in sweeps]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
     stretches = tuple(note for part in reduced for note in part.stretches)
+    lost = lost_sweeps((part.ranges for part in reduced), points, stretches)
+    reasons = tuple(one.sentence for one in lost if one.whole)
     doubts = (
-        *lost_sweeps((part.ranges for part in reduced), points, stretches),
+        *(one.sentence for one in lost if not one.whole),
         *_compared(points.select(~points.continuous) if config.rig.on_disc else points),
     )
     warnings = [
+        *reasons,
         *doubts,
         *found.warnings,
         *(sentence for _, sentences in timed for sentence in sentences),
@@ -126,6 +130,7 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
         tuple(dict.fromkeys(said for _, said in of_slip.taken_off.values())),
         _slip_as_read(kept, {file: zero for file, (zero, _) in of_slip.taken_off.items()}),
         doubts,
+        reasons,
     )
 
 

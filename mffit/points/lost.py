@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import scipy  # its parts are loaded on first use
@@ -10,7 +11,7 @@ import scipy  # its parts are loaded on first use
 from mffit.points import constants
 from mffit.points.points import Points, of_si
 from mffit.points.remarks import COLUMN_OF
-from mffit.points.steady import STEP, samples_in
+from mffit.points.steady import LEVEL, STEP, samples_in
 from mffit.points.stretch import StretchNote
 from mffit.quantities import CONDITIONS
 from mffit.sweeps import Sweep
@@ -32,8 +33,17 @@ def ranges_of(sweep: Sweep, faulty: np.ndarray) -> Ranges:
     return {name: (float(np.min(x)), float(np.max(x))) for name, x in smooth.items()}
 
 
-def lost_sweeps(recorded: Iterable[Ranges], points: Points, notes: Sequence[StretchNote]) -> tuple[str, ...]:
-    """A sentence about each setting that moves in the recordings by more than twice as much as in the points made from them."""
+class LostSweep(NamedTuple):
+    """A setting that moves in the recordings by more than twice as much as in the points made from them."""
+
+    sentence: str
+    whole: bool  #: whether the points hold one level of an angle that was swept
+
+
+def lost_sweeps(
+    recorded: Iterable[Ranges], points: Points, notes: Sequence[StretchNote]
+) -> tuple[LostSweep, ...]:
+    """The settings of which no sweep is left."""
     found = []
     recorded = [ranges for ranges in recorded if ranges]
     for name, step in STEP.items() if recorded else ():
@@ -49,10 +59,16 @@ def lost_sweeps(recorded: Iterable[Ranges], points: Points, notes: Sequence[Stre
                 f"{factor * a:z.{digits}f} to {factor * b:z.{digits}f}{unit}"
                 for a, b in ((low, high), (lowest, highest))
             )
-            found.append(
-                f"{column} moves from {moved} in the recordings, but the points hold {left} only: no sweep of it is left"
-                f"{_reason(notes)}; `mffit sniff` lists the stretches with the reason for each"
+            levels_of = (high - low) / LEVEL[name]
+            whole = name != "kappa" and highest - lowest <= LEVEL[name] and levels_of > constants.SWEPT_LEVELS
+            cure = (
+                "; hold set-points longer, or leave out column time_s to take each row for a finished point"
             )
+            said = (
+                f"{column} moves from {moved} in the recordings, but the points hold {left} only: no sweep of it is left"
+                f"{_reason(notes)}; `mffit sniff` lists the stretches with the reason for each{cure * whole}"
+            )
+            found.append(LostSweep(said, whole))
     return tuple(found)
 
 

@@ -204,7 +204,7 @@ def _shortest_plateau(settings: SteadySettings, *, roll: bool = False) -> float:
     speed = float(np.median(settings.V))
     if not speed > 0.0:
         return float(constants.SHORTEST_STRETCH)
-    longest = constants.SHORTEST_ROLL / speed if roll else np.inf
+    longest = constants.TRANSIENT_ROLL / speed if roll else np.inf
     return min(constants.SHORTEST_STRETCH, longest) + constants.TRANSIENT_ROLL / speed
 
 

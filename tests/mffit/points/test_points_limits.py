@@ -212,8 +212,8 @@ def settings(n: int, rate: float = RATE, V: float = 5.0) -> SteadySettings:
     )
 
 
-@pytest.mark.parametrize(("seconds", "kept"), [(2.05, True), (1.95, False)])
-def test_a_plateau_lasts_two_seconds_after_two_metres_of_rolling(seconds, kept):
+@pytest.mark.parametrize(("seconds", "kept"), [(0.45, True), (0.35, False)])
+def test_a_plateau_rolls_as_far_after_its_transient_as_in_it(seconds, kept):
     """At 5 m/s the transient takes 0.4 s; the first stretch of a recording has none."""
     rng = np.random.default_rng(1)
     for begin, transient in ((0, 0.0), (100, 0.4)):
@@ -224,7 +224,7 @@ def test_a_plateau_lasts_two_seconds_after_two_metres_of_rolling(seconds, kept):
         if kept:
             assert found.begin == begin + round(transient * RATE)
         else:
-            assert found.dropped in ("only 1.9 s steady", "only 2.0 s steady")
+            assert found.dropped.startswith("only 0.3 s steady")
 
 
 def test_a_plateau_needs_eight_samples():

@@ -154,7 +154,7 @@ def test_a_short_hold_is_dropped_with_its_reason(project):
     table = series()
     held = table["alpha_deg"] == -1.0
     table = table[~held | (table["time_s"] < table.loc[held, "time_s"].min() + 1.6)]
-    project.add("series.csv", table)
+    project.add("series.csv", table.assign(V_mps=2.0))  # 1.6 s are 3.2 m
     found, warnings = load(project)
     assert len(of_file(found, "series.csv")) == len(STATIONS) - 1
     assert any("1 of 9" in w and "s steady" in w for w in warnings)

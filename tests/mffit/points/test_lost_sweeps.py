@@ -1,0 +1,69 @@
+"""Holds of any length are points once the forces have settled; without any sideslip left, a result is not to be trusted."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from mffit import build, points
+from mffit import config as configuration
+
+RATE = 20.0
+LEVELS = (0.0, 2.0, 4.0, 6.0, 4.0, 2.0, 0.0, -2.0, -4.0, -6.0, -4.0, -2.0, 0.0)
+
+
+def staircase(hold: float, speed: float, straight: float = 1.0) -> pd.DataFrame:
+    """Holds of sideslip [s] at two loads, at zero ``straight`` times as long; the force follows over 0.3 m of rolling."""
+    random = np.random.default_rng(3)
+    parts = []
+    for k, load in enumerate((2000.0, 4000.0)):
+        lengths = [round(hold * RATE * (1.0 if level else straight)) for level in LEVELS]
+        alpha = np.repeat(LEVELS, lengths)
+        followed, share = np.zeros(len(alpha)), 1.0 - np.exp(-speed / RATE / 0.3)
+        for i in range(1, len(alpha)):
+            followed[i] = followed[i - 1] + share * (alpha[i] - followed[i - 1])
+        noise = random.standard_normal((2, len(alpha)))
+        parts.append(
+            pd.DataFrame(
+                {
+                    "time_s": 1000.0 * k + np.arange(len(alpha)) / RATE,
+                    "alpha_deg": alpha + 0.01 * noise[0],
+                    "gamma_deg": 0.0,
+                    "Fz_N": load,
+                    "Fy_N": -1.1 * load * np.tanh(14.0 * np.radians(followed)) + 5.0 * noise[1],
+                    "V_mps": speed,
+                }
+            )
+        )
+    return pd.concat(parts)
+
+
+def config_of(table: pd.DataFrame, folder) -> configuration.Config:
+    table.to_csv(folder / "a.csv", index=False)
+    tyre = {"name": "x", "unloaded_radius": 0.3, "nominal_load": 3000.0, "nominal_pressure": 200.0}
+    content = {"tyre": tyre, "rig": {"type": "flat-track"}, "sweep": [{"file": "a.csv"}]}
+    return configuration.load(content, folder=folder)
+
+
+@pytest.mark.parametrize(("hold", "speed"), [(3.0, 2.0), (1.5, 5.0), (8.0, 0.6)])
+def test_holds_are_points_if_the_wheel_rolls_long_enough(tmp_path, hold, speed):
+    """After 2 m the force is settled to 0.1 %, and another metre or two of rolling shows its mean."""
+    found = points.read(config_of(staircase(hold, speed), tmp_path))
+    assert len(found.points) == 2 * len(LEVELS)
+    assert not found.reasons
+    truth = -1.1 * found.points.Fz * np.tanh(14.0 * found.points.alpha)
+    np.testing.assert_allclose(found.points.Fy, truth, atol=15.0)
+
+
+def test_without_any_sideslip_left_a_result_is_not_to_be_trusted(tmp_path):
+    """At 0.5 m/s a hold of 3 s rolls 1.5 m, and three times as far without sideslip."""
+    config = config_of(staircase(3.0, 0.5, straight=3.0), tmp_path)
+    (reason,) = points.read(config).reasons
+    assert reason.startswith(
+        "alpha_deg moves from -6.0 to 6.0 deg in the recordings, but the points hold 0.0 to 0.0 deg"
+    )
+    assert "hold set-points longer" in reason
+    result = build(config)
+    assert not result.trusted
+    assert reason in result.reasons
