@@ -376,5 +376,8 @@ def _step_of_condition(driving: np.ndarray) -> float | np.ndarray:
 
 
 def _noise(values: np.ndarray) -> float:
-    """Standard deviation of a setting's noise, from the median step between samples."""
-    return robust(np.diff(values)) / math.sqrt(2.0) if len(values) > 1 else 0.0
+    """Standard deviation of a setting's noise, from median second differences, in which an even movement vanishes.
+
+    First ones would take a movement for noise where few samples are recorded of it.
+    """
+    return robust(np.diff(values, 2)) / math.sqrt(6.0) if len(values) > 2 else 0.0

@@ -8,6 +8,8 @@ import pytest
 
 from mffit import build, points
 from mffit import config as configuration
+from mffit.points.steady import SteadySettings, stretches
+from mffit.points.stretch import MOVE
 
 RATE = 20.0
 LEVELS = (0.0, 2.0, 4.0, 6.0, 4.0, 2.0, 0.0, -2.0, -4.0, -6.0, -4.0, -2.0, 0.0)
@@ -67,3 +69,30 @@ def test_without_any_sideslip_left_a_result_is_not_to_be_trusted(tmp_path):
     result = build(config)
     assert not result.trusted
     assert reason in result.reasons
+
+
+def cut(alpha, rate: float) -> list[tuple[str, float, float]]:
+    """Kind, begin and end [s] of the stretches of a sideslip [deg] over time, recorded at a rate [Hz] with noise."""
+    time = np.arange(round(48.0 * rate)) / rate
+    noise = np.random.default_rng(1).standard_normal((4, len(time)))
+    one = np.ones(len(time))
+    settings = SteadySettings(
+        time,
+        np.radians(alpha(time) + 0.005 * noise[0]),
+        np.radians(0.003 * noise[1]),
+        4000.0 * (1.0 + 0.01 * noise[2]),
+        240e3 * (1.0 + 0.001 * noise[3]),
+        16.7 * one,
+        0.0 * one,
+    )
+    return [(s.kind, time[s.begin], time[s.end - 1]) for s in stretches(settings) if s.kind != MOVE]
+
+
+@pytest.mark.parametrize("rate", [10.0, 100.0, 1000.0])
+def test_the_rate_of_recording_does_not_decide_what_rests(rate):
+    """The tops of a sine of 10 deg in 16 s move by 0.15 deg in 0.4 s: they are no rests, however few samples show it."""
+    (sweep,) = cut(lambda time: 10.0 * np.sin(2.0 * np.pi * time / 16.0), rate)
+    assert sweep == ("sweep", 0.0, pytest.approx(48.0, abs=0.2))
+    held = cut(lambda time: 2.0 * np.floor(time / 8.0), rate)
+    assert [kind for kind, *_ in held] == ["plateau"] * 6
+    np.testing.assert_allclose([begin for _, begin, _ in held], 8.0 * np.arange(6), atol=0.3)
