@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.config.lines import line_text
 from mffit.errors import InputError
 from mffit.points import averaging, remarks
 from mffit.points.choice import chosen
@@ -17,6 +18,7 @@ from mffit.points.points import Points
 from mffit.points.steady import Scale
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.sweeps import Sweep
+from tir.errors import counted
 
 
 class Reduced(NamedTuple):
@@ -88,6 +90,13 @@ def _check_time(sweep: Sweep) -> None:
         sentence = (
             "time does not rise from row to row; sort the rows, or give every run its own label in column run"
         )
+        repeated = sweep.table.duplicated().to_numpy()
+        if np.any(repeated) and np.all(np.diff(sweep.time[~repeated]) > 0.0):
+            lines = line_text(sweep.line[repeated])
+            sentence = (
+                f'{counted(int(repeated.sum()), "row")} repeated from before; remove them, or write exclude = [{{ file = "{sweep.file}", '
+                f'lines = "{lines}", why = "repeated" }}] under [fit]'
+            )
         if not np.any(np.diff(sweep.time)):
             sentence = "time is the same in all rows; map the column that holds the time of the samples"
         line = int(sweep.line[falls[0] + 1])

@@ -8,6 +8,7 @@ import pytest
 
 from mffit import build, points
 from mffit import config as configuration
+from mffit.errors import InputError
 from mffit.points.steady import SteadySettings, stretches
 from mffit.points.stretch import MOVE
 
@@ -41,10 +42,10 @@ def staircase(hold: float, speed: float, straight: float = 1.0) -> pd.DataFrame:
     return pd.concat(parts)
 
 
-def config_of(table: pd.DataFrame, folder) -> configuration.Config:
+def config_of(table: pd.DataFrame, folder, **more) -> configuration.Config:
     table.to_csv(folder / "a.csv", index=False)
     tyre = {"name": "x", "unloaded_radius": 0.3, "nominal_load": 3000.0, "nominal_pressure": 200.0}
-    content = {"tyre": tyre, "rig": {"type": "flat-track"}, "sweep": [{"file": "a.csv"}]}
+    content = {"tyre": tyre, "rig": {"type": "flat-track"}, "sweep": [{"file": "a.csv"}], **more}
     return configuration.load(content, folder=folder)
 
 
@@ -96,3 +97,14 @@ def test_the_rate_of_recording_does_not_decide_what_rests(rate):
     held = cut(lambda time: 2.0 * np.floor(time / 8.0), rate)
     assert [kind for kind, *_ in held] == ["plateau"] * 6
     np.testing.assert_allclose([begin for _, begin, _ in held], 8.0 * np.arange(6), atol=0.3)
+
+
+def test_rows_that_are_repeated_are_refused_with_the_lines_to_leave_out(tmp_path):
+    table = staircase(3.0, 2.0)
+    config = config_of(pd.concat([table[:300], table[200:300], table[300:]]), tmp_path)
+    with pytest.raises(InputError, match="100 rows repeated") as found:
+        points.read(config)
+    entry = {"file": "a.csv", "lines": "302-401", "why": "repeated"}
+    assert ", ".join(f'{key} = "{value}"' for key, value in entry.items()) in found.value.sentence
+    cured = config_of(pd.read_csv(tmp_path / "a.csv"), tmp_path, fit={"exclude": [entry]})
+    assert len(points.read(cured).points) == 2 * len(LEVELS)
