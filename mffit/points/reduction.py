@@ -93,10 +93,9 @@ def _check_time(sweep: Sweep) -> None:
         repeated = sweep.table.duplicated().to_numpy()
         if np.any(repeated) and np.all(np.diff(sweep.time[~repeated]) > 0.0):
             lines = line_text(sweep.line[repeated])
-            sentence = (
-                f'{counted(int(repeated.sum()), "row")} repeated from before; remove them, or write exclude = [{{ file = "{sweep.file}", '
-                f'lines = "{lines}", why = "repeated" }}] under [fit]'
-            )
+            entry = f'{{ file = "{sweep.file}", lines = "{lines}", why = "repeated" }}'
+            number = counted(int(repeated.sum()), "row")
+            sentence = f"{number} repeated from before; remove them, or write exclude = [{entry}] under [fit]"
         if not np.any(np.diff(sweep.time)):
             sentence = "time is the same in all rows; map the column that holds the time of the samples"
         line = int(sweep.line[falls[0] + 1])
