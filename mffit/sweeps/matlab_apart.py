@@ -53,6 +53,9 @@ def _collect(path: tuple[str, ...], value: np.ndarray, found: list[Leaf]) -> Non
         found.append((path, {key: _texts(value.reshape(-1)[0][key]) for key in ("name", "units")}))
     elif names:
         _collect_fields(path, value, found)
+    elif value.dtype == object and all(np.asarray(cell).dtype.names for cell in value.reshape(-1)):
+        for k, cell in enumerate(value.reshape(-1), 1):  # a cell array of structures, as an array of them
+            _collect((*path[:-1], f"{path[-1]}({k})"), np.asarray(cell), found)
     elif value.dtype.kind == "U" and value.size == 1:
         found.append((path, str(value.reshape(-1)[0])[:LARGEST_TEXT].strip()))
     elif value.dtype.kind in "fiub" and value.size > 1 and value.size == max(value.shape):

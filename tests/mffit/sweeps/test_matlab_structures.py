@@ -131,3 +131,14 @@ def test_a_matrix_without_names_is_refused(tmp_path):
     scipy.io.savemat(tmp_path / "a.mat", {"data": np.ones((20, 3))})
     with pytest.raises(InputError, match=r"data, a matrix of 20 x 3, .*SA = data\(:, 1\)"):
         formats.read(tmp_path / "a.mat")
+
+
+def test_a_cell_array_of_structures_is_read_as_runs(tmp_path):
+    alpha = np.linspace(-8.0, 8.0, 12)
+    runs = [{"SA": alpha + k, "FY": -1000.0 * alpha * (1 + k)} for k in range(3)]
+    scipy.io.savemat(tmp_path / "a.mat", {"data": np.array(runs, dtype=object)})
+    raw = formats.read(tmp_path / "a.mat")
+    assert raw.headings == ("SA", "FY", "run")
+    np.testing.assert_allclose(raw.column("SA"), np.concatenate([run["SA"] for run in runs]))
+    np.testing.assert_allclose(raw.column("FY"), np.concatenate([run["FY"] for run in runs]))
+    assert list(dict.fromkeys(raw.column("run"))) == ["data(1)", "data(2)", "data(3)"]
