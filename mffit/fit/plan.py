@@ -16,7 +16,7 @@ from mffit.fit.known import Known
 from mffit.fit.priors import Prior, scatters
 from mffit.fit.priors import scatter as scatter_of
 from mffit.fit.problem import FitProblem
-from mffit.fit.rig.rig_numbers import held_rig, rig_numbers
+from mffit.fit.rig.rig_numbers import held_rig, rig_numbers, unseen_zeros
 from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.stages import BY_STAGE, ODD_TERMS
 from mffit.least_squares import EXACT, FreeNumber
@@ -107,8 +107,8 @@ def fit_plan(
     """
     cover = coverage(points, config.tyre.side, known.hand.held)
     channels = fitted_channels(cover, points)
-    turned = len(np.unique(points.mount)) > 1
-    rig = rig_numbers(config, measured, points.used_setups, channels, turned=turned)
+    unseen_of_rig = unseen_zeros(points)
+    rig = rig_numbers(config, measured, points.used_setups, channels, unseen=unseen_of_rig)
     staged = {name: start[name] for row in cover for name in (*row.free, *row.held)}
     unseen = {name for row in cover for name in row.held if side_run(points)}
     scatter = scatters(staged, known.origin, curved=bool(np.any(points.phi_t)), unseen=unseen)
@@ -137,7 +137,9 @@ def fit_plan(
         channels=channels,
         extra=tuple(extra),
         held=held,
-        held_rig=held_rig(config, points.used_setups, channels, turned=turned),
+        held_rig=held_rig(
+            config, points.used_setups, channels, unseen=unseen_of_rig, C_alpha=measured.C_alpha
+        ),
     )
     return _by_hand(plan, known.hand)
 

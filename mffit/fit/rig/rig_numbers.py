@@ -5,17 +5,35 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 
+import numpy as np
+
 from mffit.config import Config, Declaration, declared_faults, declared_rig
 from mffit.constants import COVERAGE_FACTOR_95, USUAL_CORNERING_STIFFNESS
 from mffit.fit import constants
 from mffit.least_squares import FreeNumber
 from mffit.measured import Measured
+from mffit.points import Points, levels
 from mffit.quantities import SIDEWAYS
 from mffit.rig_errors import BY_NAME, ZEROS, Faults, number_of
+from tir import Quantity
 
 SIDESLIP_ZERO = "alpha_0_deg"
 CAMBER_ZERO = "gamma_0_deg"
 COMPLIANCE = "compliance_deg_per_Nm"
+
+
+def unseen_zeros(points: Points) -> frozenset[str]:
+    """The zeros of the axes that one set-up on a flat track does not tell from the tyre.
+
+    That of camber, unless the tyre was also run turned on its rim. That of sideslip, if all sweeps, or those that are driven or
+    braked, have sideslip of one sign only: what the formula misses there would pass as a zero.
+    """
+    steered = np.abs(points.alpha) > levels.SIDESLIP.tolerance
+    driven = steered & ~points.free_rolling
+    signs = [np.unique(np.sign(points.alpha[rows])) for rows in (steered, driven)]
+    one_sided = any(len(found) == 1 for found in signs)
+    turned = len(np.unique(points.mount)) > 1
+    return frozenset(([] if turned else [CAMBER_ZERO]) + ([SIDESLIP_ZERO] if one_sided else []))
 
 
 def known_faults(config: Config, measured: Measured, setups: Sequence[str] = ()) -> Faults:
@@ -48,15 +66,14 @@ def rig_numbers(
     setups: Sequence[str] = (),
     channels: Collection[str] = SIDEWAYS,
     *,
-    turned: bool = False,
+    unseen: Collection[str] = (CAMBER_ZERO,),
 ) -> tuple[FreeNumber, ...]:
     """The declared rig errors that the fit frees, with their priors, if they act on the ``channels`` of the fit.
 
     Calibrations are held, see :func:`held_rig`. On a disc without turn-slip zeros, errors of Fy, Mz and the angles are left out,
     except the compliance of the steering. On a flat track the priors apportion an asymmetry between zeros on the one hand and
-    ply-steer, conicity and residual torque on the other; the camber zero is held unless the tyre was also run ``turned`` on its
-    rim. With several ``setups`` each has its own zeros; if repeated set-ups scatter more than declared, the scatter widens the
-    prior of F0_N.
+    ply-steer, conicity and residual torque on the other; the ``unseen`` zeros are held, see :func:`unseen_zeros`. With several
+    ``setups`` each has its own zeros; if repeated set-ups scatter more than declared, the scatter widens the prior of F0_N.
     """
     others = [
         _number(name, prior, setup)
@@ -64,30 +81,35 @@ def rig_numbers(
         if _of_other_channels(name) and BY_NAME[name].shows_in(channels) and not BY_NAME[name].is_gain
         for setup in (setups if len(setups) > 1 else ("",))
     ]
-    return (*_sideways(config, measured, setups, turned), *others)
+    return (*_sideways(config, measured, setups, unseen), *others)
 
 
 def held_rig(
-    config: Config, setups: Sequence[str] = (), channels: Collection[str] = SIDEWAYS, *, turned: bool = False
+    config: Config,
+    setups: Sequence[str] = (),
+    channels: Collection[str] = SIDEWAYS,
+    *,
+    unseen: Collection[str] = (CAMBER_ZERO,),
+    C_alpha: Quantity | None = None,
 ) -> dict[str, float]:
     """Standard uncertainty of declared errors that the ``channels`` cannot separate from coefficients.
 
     The fit takes these errors as absent and propagates their uncertainty to the coefficients. Examples: a calibration error of Fy
     looks like grip and stiffness. On a flat track a skew of the camber axis looks like camber stiffness. So does most of a
     camber zero: only terms quadratic in camber distinguish it, which the formula does not model well enough, so that misfit
-    would appear as a zero of degrees. Several ``setups`` or a tyre ``turned`` on its rim separate the camber zero, and on a disc
-    turn slip separates both; then the fit frees them.
+    would appear as a zero of degrees. Several ``setups`` separate the zeros that are ``unseen`` with one, and on a disc turn slip
+    separates all; then the fit frees them. ``C_alpha`` [N/rad] turns declared forces into angles.
     """
-    one_zero = len(setups) < 2 and not turned
 
     def is_held(name: str) -> bool:
         if BY_NAME[name].is_gain:
             return BY_NAME[name].shows_in(channels)
         if config.rig.on_disc or _of_other_channels(name) or name == COMPLIANCE:
             return False
-        return not BY_NAME[name].of_setup or (name == CAMBER_ZERO and one_zero)
+        return not BY_NAME[name].of_setup or (name in unseen and len(setups) < 2)
 
-    declared = declared_rig(config.rig, USUAL_CORNERING_STIFFNESS)
+    usual = USUAL_CORNERING_STIFFNESS * config.tyre.nominal_load
+    declared = declared_rig(config.rig, C_alpha.value if C_alpha else usual)
     return {name: prior.u for name, prior in declared.items() if is_held(name)}
 
 
@@ -97,7 +119,7 @@ def _of_other_channels(name: str) -> bool:
 
 
 def _sideways(
-    config: Config, measured: Measured, setups: Sequence[str], turned: bool
+    config: Config, measured: Measured, setups: Sequence[str], unseen: Collection[str]
 ) -> tuple[FreeNumber, ...]:
     """The free numbers of the rig errors that act on Fy and Mz."""
     several = len(setups) > 1
@@ -115,8 +137,7 @@ def _sideways(
         seen = {name for name in declared if (zeros and BY_NAME[name].of_setup) or name == COMPLIANCE}
         declared = {name: prior for name, prior in declared.items() if name in seen}
     if not several and not config.rig.on_disc:
-        if not turned:
-            declared.pop(CAMBER_ZERO, None)
+        declared = {name: prior for name, prior in declared.items() if name not in unseen}
         return _of_setups(declared, measured, ("",))
     if several:
         return _of_setups(declared, measured, setups)

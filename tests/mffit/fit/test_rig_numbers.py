@@ -12,7 +12,7 @@ import small_rigs
 from mffit import config
 from mffit.fit.by_hand import NO_HAND
 from mffit.fit.plan import fit_plan
-from mffit.fit.rig.rig_numbers import held_rig, known_faults, known_zeros, rig_numbers
+from mffit.fit.rig.rig_numbers import held_rig, known_faults, known_zeros, rig_numbers, unseen_zeros
 from mffit.points import make_points
 from mffit.rig import Simulation
 from tir import Quantity
@@ -144,11 +144,36 @@ def test_a_straight_path_has_its_zeros_and_a_disc_without_any_has_none():
     found = {name: n.spread for name, n in by_name(flat, direct(setup_scatter=None)).items()}
     angle = pytest.approx(math.degrees(20.0 / 18000.0))
     assert found == {"F0_N": 8.0, "alpha_0_deg": angle, "M0_Nm": 1.0}
-    turned = rig_numbers(flat, direct(setup_scatter=None), turned=True)
+    turned = rig_numbers(flat, direct(setup_scatter=None), unseen=())
     assert {n.name: n.spread for n in turned} == {**found, "gamma_0_deg": 0.3}
     assert held_rig(flat)["gamma_0_deg"] == 0.3
-    assert "gamma_0_deg" not in {**held_rig(flat, turned=True), **held_rig(flat, ("A", "B"))}
+    assert "gamma_0_deg" not in {**held_rig(flat, unseen=()), **held_rig(flat, ("A", "B"))}
     assert rig_numbers(rig(), direct(per_load=(SimpleNamespace(F_phit=None),))) == ()
+
+
+@pytest.mark.parametrize(
+    ("rolling_deg", "driven_deg", "told"),
+    [
+        ((-8, 8), (0, 3, 6), False),
+        ((-8, 8), (-3, 3, 6), True),
+        ((-8, 8), (0, 0), True),
+        ((0, 4, 8), (), False),
+    ],
+)
+def test_the_sideslip_zero_is_held_where_driven_or_all_sweeps_have_one_sign(rolling_deg, driven_deg, told):
+    alpha = np.radians([*rolling_deg, *driven_deg])
+    kappa = np.repeat([0.0, 0.1], [len(rolling_deg), len(driven_deg)])
+    points = make_points(
+        alpha, 0.0, 1400.0, kappa=kappa, Fx=1.0, Fy=0.0, Mz=np.nan, p=250e3, V=8.0, phi_t=0.0
+    )
+    unseen = unseen_zeros(points)
+    flat = rig(type="flat-track", path_radius=None, u_path_radius=None)
+    free = {n.name for n in rig_numbers(flat, direct(setup_scatter=None), unseen=unseen)}
+    held = held_rig(flat, unseen=unseen)
+    assert ("alpha_0_deg" in free, "alpha_0_deg" in held) == (told, not told)
+    if not told:
+        usual = 12.0 * flat.tyre.nominal_load  # N/rad
+        assert held["alpha_0_deg"] == pytest.approx(math.degrees(20.0 / usual), rel=0.3)
 
 
 def test_calibrations_are_held_wherever_they_show_and_a_declared_compliance_is_a_number_of_the_fit():
