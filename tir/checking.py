@@ -49,6 +49,7 @@ SINGLE = (
         ("ALPMIN", "ALPMAX", "CAMMIN", "CAMMAX"),
         lambda x: abs(x) > constants.LARGEST_ANGLE,
         "it looks like degrees; write radians",
+        "error",
     ),
     PlausibleRule(
         ("WIDTH", "RIM_WIDTH"),
@@ -171,8 +172,9 @@ def _dimensions(tyre: Tyre) -> Iterator[Problem]:
     R0 = tyre["UNLOADED_RADIUS"]
     smallest, largest = constants.LENGTH_RANGE
     if not smallest < R0 < largest:
-        millimetres = 1e3 * smallest < R0
-        hint = "it looks like millimetres" if millimetres else "a radius in metres was expected"
+        units = {"centimetres": 100.0, "millimetres": 1000.0}
+        fits = [unit for unit, factor in units.items() if smallest < R0 / factor < largest]
+        hint = f"it looks like {' or '.join(fits)}" if fits else "a radius in metres was expected"
         yield _error("UNLOADED_RADIUS", f"UNLOADED_RADIUS is {R0:g}: {hint}; correct it or [UNITS] LENGTH")
     if tyre["RIM_RADIUS"] >= R0:
         said = f"RIM_RADIUS {tyre['RIM_RADIUS']:g} is not smaller than UNLOADED_RADIUS {R0:g}"
@@ -230,7 +232,9 @@ def _ranges(tyre: Tyre) -> Iterator[Problem]:
                 f"{name} {tyre[name]:g} lies outside PRESMIN {tyre['PRESMIN']:g} to PRESMAX {tyre['PRESMAX']:g}: simulations "
                 "limit the pressure to the range",
             )
-    if not tyre["FZMIN"] <= tyre["FNOMIN"] <= tyre["FZMAX"]:
+    if tyre["FZMIN"] <= 1e3 * tyre["FNOMIN"] <= tyre["FZMAX"] and tyre["FNOMIN"] < tyre["FZMIN"]:
+        yield _error("FNOMIN", f"FNOMIN is {tyre['FNOMIN']:g} N: it looks like kN; write newtons")
+    elif not tyre["FZMIN"] <= tyre["FNOMIN"] <= tyre["FZMAX"]:
         yield _warning(
             "FZMAX",
             f"the nominal load {tyre['FNOMIN']:g} lies outside FZMIN {tyre['FZMIN']:g} to FZMAX {tyre['FZMAX']:g}",

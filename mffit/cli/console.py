@@ -12,11 +12,14 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
 from mffit.progress import Progress, ShownStep, silent
+
+if TYPE_CHECKING:
+    from tir import Tyre
 
 NOT_ASCII = re.compile(r"[^\x00-\x7f]")
 NOT_TRUSTED = 3
@@ -80,6 +83,12 @@ class Voice:
         """Print warnings to stderr, one line each, even with ``--quiet``."""
         for sentence in warnings:
             click.echo(f"warning: {sentence}", err=True)
+
+    def warn_of(self, file: Path, tyre: Tyre) -> None:
+        """Warn of what ``mffit check`` calls an error in a file that is in use: its forces are not those that were meant."""
+        import tir
+
+        self.warn(f"{file}: {one.sentence}" for one in tir.check(tyre) if one.level == "error")
 
     def distrust(self, what: str) -> NoReturn:
         """End with the exit code of a result that is not to be trusted."""

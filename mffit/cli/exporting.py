@@ -28,6 +28,7 @@ def _report(voice: Voice, written: list[Path], file: Path, turn_slip: bool | Non
 
     names = [str(path) for path in written]
     tyre = tir.read(file)
+    voice.warn_of(file, tyre)
     on = tyre.turn_slip if turn_slip is None else turn_slip
     why = f"the file's USE_MODE is {tyre['USE_MODE']:g}" if turn_slip is None else "as asked for"
     voice.say(f"written with {words(on)} ({why}): {', '.join(names)}")
@@ -124,6 +125,7 @@ def property_file(file: Path, targets: list[str], out: Path, voice: Voice) -> No
     if not targets:
         raise InputError("names no program: write, for example, --for mfeval,simscape", key="--for")
     tyre = tir.read(file)
+    voice.warn_of(file, tyre)
     texts = {f"{file.stem}-{name}.tir": tyre.text(name) for name in targets}
     made = [interpret(parse_document(text)) for text in texts.values()]
     lacking = {key for other in made for key in other.present} - tyre.present

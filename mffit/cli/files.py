@@ -69,7 +69,11 @@ def show(
     measured points, and sliders for the coefficients.
     """
     import mffit
+    import tir
 
+    for file in files:
+        if file.suffix == ".tir":
+            voice.warn_of(file, tir.read(file, **given))
     with voice.progress() as say:
         page = mffit.show(files, out, given=given, progress=say)
     if out is None:

@@ -102,9 +102,13 @@ def compare(first: Path, second: Path, out: Path | None, voice: Voice, **asked: 
 
     Ranks the differences of curves, stiffnesses, peaks, trail and eps_gamma.
     """
+    import tir
     from mffit import pipeline
     from mffit.report import text
 
+    for file in (first, second):
+        if file.suffix == ".tir":
+            voice.warn_of(file, tir.read(file, **asked["given"]))
     with voice.progress() as show:
         found = pipeline.compare(first, second, out=out, progress=show, **asked)
     voice.answer(found, text.comparison_table(found), out, "compare.html", "compare.json")

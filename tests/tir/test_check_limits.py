@@ -24,7 +24,14 @@ HALF = {"PECP1": 0.5, "PECP2": 0.0}
 LIMITS = [
     ("a radius in metres was expected", {"UNLOADED_RADIUS": 1.51}, {"UNLOADED_RADIUS": 1.49}),
     ("a radius in metres was expected", {"UNLOADED_RADIUS": 0.049}, {"UNLOADED_RADIUS": 0.051}),
-    ("it looks like millimetres; correct", {"UNLOADED_RADIUS": 50.1}, {"UNLOADED_RADIUS": 49.9}),
+    (
+        "it looks like centimetres or millimetres; correct",
+        {"UNLOADED_RADIUS": 50.1},
+        {"UNLOADED_RADIUS": 49.9},
+    ),
+    ("it looks like millimetres; correct", {"UNLOADED_RADIUS": 150.1}, {"UNLOADED_RADIUS": 149.9}),
+    ("it looks like centimetres; correct", {"UNLOADED_RADIUS": 32.0}, {"UNLOADED_RADIUS": 0.32}),
+    ("it looks like kN", {"FNOMIN": 4.0, "FZMIN": 200.0, "FZMAX": 8000.0}, {"FNOMIN": 4000.0}),
     ("is not smaller than UNLOADED_RADIUS", {"RIM_RADIUS": R0}, {"RIM_RADIUS": 0.999 * R0}),
     (
         "deflect by more than its radius",
