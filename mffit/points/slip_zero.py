@@ -173,14 +173,14 @@ def slip_zero(of: Driven) -> SlipZero | None:
 
 
 def unexplained_drive(of: Driven) -> float:
-    """Range of Fx over the usual load, straight ahead; 0 if the slip moves enough to explain it by the stiffest tyre."""
+    """Range of Fx over the load, straight ahead; 0 if the slip moves enough to explain it by the stiffest tyre."""
     load = np.abs(of.Fz)
     straight = np.all(np.isfinite([of.kappa, of.Fx, load]), axis=0) & (np.abs(of.alpha) < STRAIGHT.rad)
     straight &= load > constants.UNLOADED * np.nanmedian(load) if np.any(straight) else False
     if np.sum(straight) < constants.FEWEST_POINTS:
         return 0.0
-    force, slip = (float(np.ptp(np.percentile(x[straight], constants.CORE))) for x in (of.Fx, of.kappa))
-    drive = force / float(np.median(load[straight]))
+    driven = (of.Fx[straight] / load[straight], of.kappa[straight])
+    drive, slip = (float(np.ptp(np.percentile(x, constants.CORE))) for x in driven)
     return drive if drive > max(WEAKEST, constants.STIFFEST_SLIP_STIFFNESS * slip) else 0.0
 
 

@@ -523,7 +523,8 @@ def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 def whole_sweeps(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit over the stated noise that is neither noise within the sweeps nor proven to be common to all of them."""
     for name, channel in fit.linear.channels.items() if fit.linear else ():
-        if fit.misfit(name).n and fit.beyond_scatter(name) and not channel.is_proven:
+        beyond = fit.misfit(name).ratio > constants.MISFIT_IN_DOUBT and fit.beyond_scatter(name)
+        if beyond and not channel.is_proven:
             yield {"channel": name, "ratio": fit.misfit(name).ratio, "carriers": _carriers(fit, name)}
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from mffit.points.slip_zero import Driven, slip_zero
+from mffit.points.slip_zero import Driven, slip_zero, unexplained_drive
 
 
 def readings(near: float) -> Driven:
@@ -62,3 +63,11 @@ def test_a_zero_that_curves_with_sideslip_is_found_straight_ahead():
         zero + 0.03 * force, force * fixed, fixed, alpha, 0.0 * fixed, fixed, np.full(n, np.nan), fixed
     )
     np.testing.assert_allclose(slip_zero(driven).at(driven), zero, atol=3e-4)
+
+
+def test_the_drive_without_slip_is_told_over_the_load_of_each_reading():
+    """2.5 times the load driving and braking, at loads of 1 to 5: the range is 5 times the load, not that of the largest."""
+    load = np.repeat([200.0, 600.0, 1000.0], 100)
+    force = 2.5 * load * np.tile(np.repeat([-1.0, 1.0], 50), 3)
+    none = np.zeros(len(load))
+    assert unexplained_drive(Driven(none, force, load, none, none, none, none, none)) == pytest.approx(5.0)
