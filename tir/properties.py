@@ -304,9 +304,15 @@ def _about_empty(complete: Mapping[str, Any], given: Collection[str], document: 
     return [_warning(f"{counted(len(rows), 'key')} {verb} no value, {taken} taken: {some(names)}", first)]
 
 
-def _about_missing(
-    complete: Mapping[str, Any], given: Collection[str], stated: Collection[str]
-) -> list[Problem]:
+SECTIONS_OF_FORCES = {
+    "LONGITUDINAL_COEFFICIENTS": "Fx",
+    "LATERAL_COEFFICIENTS": "Fy",
+    "ALIGNING_COEFFICIENTS": "Mz",
+}
+"""Force or moment that each section describes alone."""
+
+
+def _about_missing(complete: Mapping[str, Any], given: Collection[str], stated: set[str]) -> list[Problem]:
     """Problems for missing keys of the file's version; those without a usable value have been reported already."""
     version = complete["FITTYP"] if "FITTYP" in given else None
     missing = [
@@ -322,7 +328,17 @@ def _about_missing(
         sentences = ["; ".join(["FITTYP 60 is read as MF 6.1", *sentences])]
     if version is None:
         sentences.insert(0, "FITTYP is missing; the file is read as MF 6.2")
-    return [Problem("warning", sentence, "FITTYP" * sentence.startswith("FITTYP")) for sentence in sentences]
+    empty = [
+        Problem(
+            "warning",
+            f"no key of [{section}] is in the file, which may end before it: all of {force} is default",
+            section,
+        )
+        for section, force in SECTIONS_OF_FORCES.items()
+        if stated.isdisjoint(row.name for row in TABLE if row.section == section)
+    ]
+    of_keys = [Problem("warning", said, "FITTYP" * said.startswith("FITTYP")) for said in sentences]
+    return [*empty, *of_keys]
 
 
 def _defaults_in_words(missing: Sequence[Parameter], complete: Mapping[str, Any]) -> list[str]:

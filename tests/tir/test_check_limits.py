@@ -144,3 +144,13 @@ def test_a_sideslip_limit_beyond_the_peak_is_no_problem():
     assert 0.02 < peak < 0.2
     for factor, told in ((1.02, False), (0.95, True)):
         assert ("of its peak" in said({**early, "ALPMAX": factor * peak, "ALPMIN": -0.3})) == told
+
+
+def test_a_file_that_ends_before_a_section_says_which_moment_is_default(tmp_path):
+    text = TYRE.text()
+    whole, cut = tmp_path / "whole.tir", tmp_path / "cut.tir"
+    whole.write_text(text)
+    cut.write_text(text[: text.index("[ALIGNING_COEFFICIENTS]")])
+    said = "all of Mz is default"
+    assert not any(said in problem.sentence for problem in tir.read(whole).problems)
+    assert any(said in problem.sentence for problem in tir.read(cut).problems)
