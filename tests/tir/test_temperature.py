@@ -48,7 +48,7 @@ def test_a_second_change_of_temperature_counts_from_the_first(tyre):
 
 def test_the_term_of_a_warmer_file_is_uncertain_by_what_the_term_moves_it(tyre):
     """By differences: k' = k / (1 + k dT)."""
-    k, u, _ = TERMS["rig.k_T_grip_per_K"]
+    k, u, *_ = TERMS["rig.k_T_grip_per_K"]
     ends = [(k + s) / (1.0 + (k + s) * 12.0) for s in (1e-7, -1e-7)]
     assert tyre.at_temperature(72.0).measured["rig.k_T_grip_per_K"].u == pytest.approx(
         u * (ends[0] - ends[1]) / 2e-7, rel=1e-5
