@@ -111,6 +111,18 @@ def side_run(points: Points) -> bool:
     return len(np.unique(np.sign(seen))) == 1
 
 
+UNSEEN = (
+    "the formula misses these readings, and one side of a disc does not tell an asymmetry from what it misses of turn slip: run "
+    "the other side of the disc, or the tyre turned on its rim"
+)
+"""Why the asymmetries of a tyre are held that a disc shows from one side only."""
+
+
+def one_sided(points: Points) -> bool:
+    """Whether all readings were taken on a path that curves to one side, with the tyre mounted one way."""
+    return bool(np.all(points.phi_t)) and not _differ(np.sign(points.phi_t)) and not _differ(points.mount)
+
+
 def _straight_on(points: Points) -> np.ndarray:
     """Mask (n,) of the points at which the upright wheel rolls freely on a straight path without sideslip."""
     upright = np.abs(points.gamma) < UPRIGHT.rad

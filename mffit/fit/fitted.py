@@ -8,13 +8,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from mffit.fit.by_hand import NO_HAND, Hand
+from mffit.fit.coverage import one_sided
 from mffit.fit.problem import FitProblem
+from mffit.fit.stages import ODD_TERMS
 from mffit.fit.told import Priors, numbers_told, told_by_sweeps
 from mffit.least_squares import FreeNumber, solve
 from mffit.linearised import LinearisedFit, Uncertain, linearised
 from mffit.numbers import Numbers
 from mffit.rig import Simulation
-from mffit.rig_errors import error_of
+from mffit.rig_errors import ZEROS, error_of
 from tir.parameters import BY_NAME
 
 SPIN = ("PECP1", "PECP2")
@@ -101,8 +103,12 @@ def left_by(
     """
     free = fitted.problem.starting_here(fitted.numbers)
     numbers = [uncertain(n) for n in free if error_of(n.name) or n.name not in fitted.at_bound]
-    numbers += [Uncertain(name, 0.0, u, held=True) for name, u in fitted.taken_as_exact.items()]
     problem = of or fitted.problem
+    beside = one_sided(problem.points)
+    numbers += [
+        Uncertain(n, 0.0, u, held=not (beside and (n in ODD_TERMS or error_of(n) in ZEROS)))
+        for n, u in fitted.taken_as_exact.items()
+    ]
     return linearised(problem.points, fitted.simulation, problem.sigma, numbers, without=without, near=near)
 
 

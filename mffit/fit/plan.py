@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -23,6 +23,7 @@ from mffit.least_squares import EXACT, FreeNumber
 from mffit.measured import Measured
 from mffit.points import Points
 from mffit.quantities import CHANNELS, SIDEWAYS
+from mffit.rig_errors import ZEROS, error_of
 from tir.parameters import BY_NAME
 
 
@@ -46,6 +47,34 @@ class FitPlan:
     def free(self) -> list[str]:
         """Coefficients that the stages free."""
         return [name for row in self.cover for name in row.free]
+
+    @property
+    def asymmetries(self) -> list[str]:
+        """Free numbers that are zero for a tyre of perfect mirror symmetry on a rig without zeros, but for those set by hand."""
+        odd = [name for name in self.free if name in ODD_TERMS and name not in self.hand.names]
+        return [*odd, *(number.name for number in self.rig if error_of(number.name) in ZEROS)]
+
+    def holding(self, names: Collection[str], why: str) -> FitPlan:
+        """The plan with some free numbers held, with the uncertainty of their priors; ``why`` their coverage says."""
+        cover = tuple(
+            replace(
+                row,
+                free=tuple(name for name in row.free if name not in names),
+                held=(*row.held, *(name for name in row.free if name in names)),
+                missing=(*row.missing, why),
+            )
+            if set(row.free) & set(names)
+            else row
+            for row in self.cover
+        )
+        rig = {number.name: number.spread for number in self.rig if number.name in names}
+        return replace(
+            self,
+            cover=cover,
+            rig=tuple(number for number in self.rig if number.name not in names),
+            held={**self.held, **{name: self.scatter[name] for name in names if name not in rig}},
+            held_rig={**self.held_rig, **rig},
+        )
 
     def coefficients(self, names: Iterable[str], problem: FitProblem) -> list[FreeNumber]:
         """The named coefficients with their bounds and priors, starting at their current values."""

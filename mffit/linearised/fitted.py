@@ -263,18 +263,19 @@ class _Sight(NamedTuple):
     numbers: Sequence[Uncertain]
     without: np.ndarray
     near: Mapping[str, Components]  #: by channel
-    looked_at: dict[bytes, _LookedAt]  #: cache by the rows, which are equal for most channels
+    looked_at: dict[tuple[bytes, int], _LookedAt]  #: cache by the rows, which are equal for most channels
 
-    def at(self, rows: np.ndarray) -> _LookedAt:
+    def at(self, rows: np.ndarray, sign: int) -> _LookedAt:
         """The points of some rows (n,) with their smooth functions, cached."""
-        known = self.looked_at.get(rows.tobytes())
+        key = (rows.tobytes(), sign)
+        known = self.looked_at.get(key)
         if known is None:
             part, at_tyre = (p.select(rows, with_table=False) for p in (self.points, self.felt))
             inputs = inputs_of(at_tyre)
-            smooth = SmoothFunctions.over(inputs)
+            smooth = SmoothFunctions.over(inputs, sign)
             columns = smooth.columns(settings_of(at_tyre, inputs))
             known = _LookedAt(part, smooth, columns, along(at_tyre, inputs))
-            self.looked_at[rows.tobytes()] = known
+            self.looked_at[key] = known
         return known
 
 
@@ -299,7 +300,7 @@ def _channel(
     every = np.flatnonzero(used)
     stride = max(1, -(-len(every) // int(constants.POINTS_EXAMINED)))
     rows = every[::stride]
-    part, smooth, functions, place = sight.at(rows)
+    part, smooth, functions, place = sight.at(rows, -1 if name in ('Fy', 'Mz', 'Mx') else 1)
     residual = part.channel(name) - model[rows]
     stated = part.u(name)
     usual = float(np.median(sigma[rows]))

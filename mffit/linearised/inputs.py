@@ -28,7 +28,9 @@ OTHER_WORDS: Mapping[str, str] = {
     "sense": "sense of the sweeps",
 }
 ALSO: tuple[str, ...] = ("phi_t", "T", "direction", "mount")
-"""Further conditions, each used only if it varies."""
+"""Further conditions, each used only if it varies; the curvature of a path is always one, see :data:`MIRRORED`."""
+MIRRORED: frozenset[str] = frozenset({"alpha", "gamma", "phi_t", "mount"})
+"""Conditions that a mirror reverses; what it makes of a reading was tested as well as the reading."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +43,7 @@ class Input:
     spacing: float  #: distance of neighbouring settings, the shortest length scale
     averaged: tuple[float, ...] = ()
     """Values over which a prediction averages if it does not state the condition; empty if predictions always state it."""
+    is_held: bool = True  #: whether every sweep holds the condition constant, at one of few settings
 
     @property
     def width(self) -> float:
@@ -48,9 +51,9 @@ class Input:
         return self.upper - self.lower
 
     @property
-    def is_held(self) -> bool:
-        """Whether every sweep holds the condition constant, at one of few settings."""
-        return self.spacing > 1.5 * self.width / constants.DIVISIONS_OF_A_SWEEP
+    def is_mirrored(self) -> bool:
+        """Whether a mirror reverses the condition."""
+        return self.name in MIRRORED
 
 
 def word_of(name: str) -> str:
@@ -72,6 +75,9 @@ def inputs_of(points: Points) -> tuple[Input, ...]:
         found.append(_input(name, values, most if is_swept else min(steps, most)))
     for name in ALSO:
         values = np.asarray(getattr(points, name), dtype=float)
+        if name == "phi_t" and np.any(values):
+            found.append(_input(name, values, 2))
+            continue
         if not np.all(np.isfinite(values)) or np.allclose(values, values[0]):
             continue
         if name == "T":
@@ -88,7 +94,14 @@ def inputs_of(points: Points) -> tuple[Input, ...]:
 
 def _input(name: str, values: np.ndarray, steps: int, averaged: tuple[float, ...] = ()) -> Input:
     low, high = float(values.min()), float(values.max())
-    return Input(name, low, high, (high - low) / steps, averaged)
+    end = max(-low, high)
+    spacing = (high - low) / steps
+    if name == "phi_t":
+        spacing = 2*end/steps
+    held = spacing > 1.5 * (high - low) / constants.DIVISIONS_OF_A_SWEEP
+    if name in MIRRORED:
+        low, high = -end, end
+    return Input(name, low, high, spacing, averaged, held)
 
 
 def _runs(points: Points) -> list[np.ndarray]:

@@ -27,9 +27,17 @@ class SmoothFunctions(ReadOnlyArrays):
 
     inputs: tuple[Input, ...]  #: (d,)
     orders: np.ndarray  #: (m, d) number of half waves of every function along every condition
+    sign: int = 0  #: by which a mirror multiplies the values of a symmetric tyre; 0 if nothing is mirrored
+
+    @property
+    def asymmetric(self) -> np.ndarray:
+        """Mask (m,) of the functions that a tyre lacks if its mirror image is the same tyre."""
+        mirrored = np.array([one.is_mirrored for one in self.inputs], dtype=bool)
+        found: np.ndarray = (-1) ** np.sum(self.orders[:, mirrored], axis=1) == -self.sign
+        return found
 
     @classmethod
-    def over(cls, inputs: tuple[Input, ...]) -> SmoothFunctions:
+    def over(cls, inputs: tuple[Input, ...], sign: int = 0) -> SmoothFunctions:
         """The basis functions with the largest prior variance at the shortest lengths."""
         orders, size = np.zeros((1, 0), dtype=int), np.zeros(1)
         for one in inputs:  # further factors only reduce the variance, so small products are dropped at once
@@ -37,8 +45,10 @@ class SmoothFunctions(ReadOnlyArrays):
             size = (size[:, None] + _log_spectrum(np.pi * order * one.spacing / _length(one))[0]).ravel()
             orders = np.column_stack([np.repeat(orders, len(order), axis=0), np.tile(order, len(orders))])
             orders, size = orders[size > -LEAST], size[size > -LEAST]
+        size = size + 2.0*np.log(0.3) * cls(inputs, orders, sign).asymmetric
+        orders, size = orders[size > -LEAST], size[size > -LEAST]
         largest = np.argsort(-size, kind="stable")[: constants.FUNCTIONS]
-        return cls(inputs, orders[largest])
+        return cls(inputs, orders[largest], sign)
 
     def columns(self, at: np.ndarray) -> np.ndarray:
         """Values (n, m) at conditions (n, d), which are clipped to the tested range."""

@@ -80,12 +80,13 @@ class Bent(NamedTuple):
     """A tyre of the formula whose grip bends with the load, which MF 6.2 cannot follow."""
 
     tyre: tir.Tyre
+    turns: bool  #: whether the camber of a straight path is spin too, as on a disc
     r_e: float = 0.3
 
     def forces(self, alpha, gamma, Fz, phi_t: float = 0.0, direction: float = 1.0):
         turned = make_points(alpha, gamma, Fz, p=250e3, V=6.0, phi_t=phi_t, direction=direction)
         plain, other = (
-            Simulation.of(tyre, turn_slip=phi_t != 0.0).readings(turned)
+            Simulation.of(tyre, turn_slip=self.turns).readings(turned)
             for tyre in (self.tyre, self.tyre.replace(LMUY=1.04))
         )
         share = np.cos(2.0 * np.pi * (np.asarray(Fz) / float(self.tyre["FNOMIN"]) - 0.6) / 0.9)
@@ -96,7 +97,7 @@ def drawn(world: str, rng: np.random.Generator) -> tuple[Any, float]:
     """A tyre and its nominal load."""
     if world.startswith("term"):
         true = scaled(tir.read(SAMPLES / "front-120-70" / "true.tir").replace(**NO_FORCE_AT_REST), 0.1, rng)
-        return Bent(true), float(true["FNOMIN"])
+        return Bent(true, "disc" in world), float(true["FNOMIN"])
     load = round(rng.uniform(1200.0, 2200.0), -1)
     unit = rng.uniform
     return Brush(
@@ -215,21 +216,23 @@ def one(job: harness.Job) -> Foreign:
 def _predicted(
     build: Path, tyre: Any, load: float, rig: dict[str, float], disc: bool, rng: np.random.Generator
 ):
-    """True forces and readings of a dozen new runs against the predictions."""
+    """True forces, of a disc also on a straight road, and readings of a dozen new runs against the predictions."""
     lean, Fz = 45.0 if disc else 9.0, rng.uniform(0.6 * load, 1.5 * load, 12)
     runs = [(np.linspace(-7, 7, 15), np.full(15, x), np.full(15, F), 1.0)
             for x, F in zip(lean * rng.uniform(-1, 1, 12), Fz, strict=True)]  # fmt: skip
     new = pd.concat([read(tyre, run, rig, disc, rng) for run in runs])
     at = new.drop(columns=["Fy_N", "Mz_Nm", "u_Fy_N", "u_Mz_Nm", "direction"])
-    found, out = mffit.predict(build, at), {}
-    angles = [np.radians(at[key].to_numpy()) for key in ("alpha_deg", "gamma_deg")]
-    truth = tyre.forces(*angles, at.Fz_N.to_numpy(), phi_t=-1.0 / RADIUS if disc else 0.0)
-    for name, true in zip(("Fy_N", "Mz_Nm"), truth, strict=True):
-        file, best, u = found[name], found[name.replace("_", "_best_")], "u_" + name.replace("_", "_{}_")
-        out[f"{name} best"] = shares(true - best, found[u.format("best")])
-        out[f"{name} file, true"] = (np.nan, np.nan, rms(true - file))
-        out[f"{name} new run"] = shares(new[name].to_numpy() - best, found[u.format("run")])
-        out[f"{name} new run, file"] = shares(new[name].to_numpy() - file, found[f"u_{name}"])
+    angles, out = [np.radians(at[key].to_numpy()) for key in ("alpha_deg", "gamma_deg")], {}
+    for where, phi_t in {"": -1.0 / RADIUS, " on the road": 0.0}.items() if disc else [("", 0.0)]:
+        found = mffit.predict(build, at.assign(phi_t_per_m=phi_t))
+        truth = tyre.forces(*angles, at.Fz_N.to_numpy(), phi_t=phi_t)
+        for name, true in zip(("Fy_N", "Mz_Nm"), truth, strict=True):
+            file, best, u = found[name], found[name.replace("_", "_best_")], "u_" + name.replace("_", "_{}_")
+            out[f"{name}{where} best"] = shares(true - best, found[u.format("best")])
+            out[f"{name}{where} file, true"] = (np.nan, np.nan, rms(true - file))
+            if not where:
+                out[f"{name} new run"] = shares(new[name].to_numpy() - best, found[u.format("run")])
+                out[f"{name} new run, file"] = shares(new[name].to_numpy() - file, found[f"u_{name}"])
     return out
 
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mffit.config import Config
-from mffit.fit.fitted import Fitted
+from mffit.fit.coverage import UNSEEN, one_sided
+from mffit.fit.fitted import Fitted, left_by
 from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, choose
 from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
 from mffit.fit.plan import FitPlan
@@ -26,6 +27,7 @@ class NuisanceFit:
     plain: Fitted  #: fit without temperature as an input: its coefficients absorb the warming
     full: Fitted  #: fit with every modelled influence
     choice: NuisanceChoice
+    plan: FitPlan  #: of the free and the held numbers, but for the influences
     left: LinearisedFit | None = None  #: linear model of the first fit's residuals, if computed
 
     @property
@@ -43,17 +45,33 @@ def fit_with_nuisances(
     one_mount = len(np.unique(problem.points.mount)) < 2
     if not config.rig.on_disc and len(problem.points.used_setups) < 2 and one_mount:
         fitted, plan, left = with_known_zeros(fitted, problem, plan)
-    choice = choose(config, fitted)
+    found = replace(_with_influences(config, problem, plan, fitted, progress), left=left)
+    unseen = plan.asymmetries if one_sided(problem.points) else []
+    if not unseen:
+        return found
+    left = left_by(found.full)
+    if not any(channel.is_proven for channel in left.channels.values()):
+        return replace(found, left=left)
+    plan = plan.holding(unseen, UNSEEN)
+    symmetric = {name: plan.expected.get(name, problem.value(name)) for name in unseen}
+    here = replace(problem, simulation=found.plain.simulation).with_values(symmetric)
+    return _with_influences(config, problem, plan, polish(here, plan), progress)
 
+
+def _with_influences(
+    config: Config, problem: FitProblem, plan: FitPlan, fitted: Fitted, progress: Progress
+) -> NuisanceFit:
+    """The fit with the influences that are chosen, beside the ``fitted`` one without them."""
+    choice = choose(config, fitted)
     if choice.modelled:
         progress(f"{FITTING_AGAIN} {', '.join(nuisance.name for nuisance in choice.modelled)}")
     full = _polished(config, problem, plan, choice, choice.modelled, fitted, choice.near.problem.simulation)
     if not any(nuisance.key == TEMPERATURE for nuisance in choice.modelled):
-        return NuisanceFit(full, full, choice, left)
+        return NuisanceFit(full, full, choice, plan)
     # Random effects of the runs would absorb the usual warming, which the plain file's coefficients are to contain.
     others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
     plain = _polished(config, problem, plan, choice, others, fitted)
-    return NuisanceFit(plain, full, choice, left)
+    return NuisanceFit(plain, full, choice, plan)
 
 
 def _polished(
