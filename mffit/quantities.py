@@ -92,6 +92,8 @@ CHANNELS = {
 """Everything that a rig may read of a tyre, by its name in sentences, files, points and the model, in this order everywhere."""
 SIDEWAYS = {name: CHANNELS[name] for name in ("Fy", "Mz")}
 """Channels of every test: Fy is required, and Mz is simulated with it whether or not it was measured."""
+REVERSED_BY_A_MIRROR = frozenset({"Fy", "Mx", "Mz"})
+"""Channels with the other sign in a mirror, where sideslip, camber and the path's curvature have the other sign."""
 SLOPE_ON_PATH = "slope at zero on the path of the measurement"
 DIRECT = {
     "epsilon_gamma": QuantityName("camber reduction factor", "ε_γ", "-", "1 + r_e C_gamma / C_phit (17)", "PECP1 and PECP2"),

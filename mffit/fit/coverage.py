@@ -118,11 +118,6 @@ UNSEEN = (
 """Why the asymmetries of a tyre are held that a disc shows from one side only."""
 
 
-def one_sided(points: Points) -> bool:
-    """Whether all readings were taken on a path that curves to one side, with the tyre mounted one way."""
-    return bool(np.all(points.phi_t)) and not _differ(np.sign(points.phi_t)) and not _differ(points.mount)
-
-
 def _straight_on(points: Points) -> np.ndarray:
     """Mask (n,) of the points at which the upright wheel rolls freely on a straight path without sideslip."""
     upright = np.abs(points.gamma) < UPRIGHT.rad

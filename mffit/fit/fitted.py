@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from mffit.fit.by_hand import NO_HAND, Hand
-from mffit.fit.coverage import one_sided
 from mffit.fit.problem import FitProblem
 from mffit.fit.stages import ODD_TERMS
 from mffit.fit.told import Priors, numbers_told, told_by_sweeps
@@ -104,7 +103,7 @@ def left_by(
     free = fitted.problem.starting_here(fitted.numbers)
     numbers = [uncertain(n) for n in free if error_of(n.name) or n.name not in fitted.at_bound]
     problem = of or fitted.problem
-    beside = one_sided(problem.points)
+    beside = problem.points.one_sided
     numbers += [
         Uncertain(n, 0.0, u, held=not (beside and (n in ODD_TERMS or error_of(n) in ZEROS)))
         for n, u in fitted.taken_as_exact.items()

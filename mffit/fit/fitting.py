@@ -122,7 +122,7 @@ def fit(
         rig={**fitted.rig_stated, **made.zeros},
         model=readings,
         posterior=made.posterior,
-        coverage=(*plan.cover, *(direction.coverage for direction in made.relaxation)),
+        coverage=(*found.plan.cover, *(direction.coverage for direction in made.relaxation)),
         explanations=(
             *modelled,
             *explanations(config, files, made.known.values, measured, hand),

@@ -19,7 +19,6 @@ class Components:
 
     missed: float  #: standard deviation of the model error over the slightly widened tested range, a constant included
     lengths: tuple[float, ...]  #: length scales of the model error along every input [unit of the input]
-    asymmetry: float  #: standard deviation of the asymmetric part of the model error, over that of the symmetric part [-]
     offset: float  #: standard deviation of the runs' offsets
     scale: float  #: standard deviation of the runs' relative scales [-]
     shape: float  #: standard deviation of the runs' smooth deviations along the swept setting
@@ -32,7 +31,6 @@ class Components:
         return cls(
             missed=misfit,
             lengths=tuple(2.0 * one.spacing for one in smooth.inputs),
-            asymmetry=0.1,
             offset=misfit / 3.0,
             scale=constants.LARGEST_RUN_SCALE / 10.0,
             shape=misfit / 3.0,
@@ -48,16 +46,16 @@ class Components:
 
     @property
     def logarithms(self) -> np.ndarray:
-        """Logarithms (d + 7,) of all components."""
+        """Logarithms (d + 6,) of all components."""
         return np.log(
-            [self.missed, *self.lengths, self.asymmetry, self.offset, self.scale, self.shape, self.shape_length, self.noise]
+            [self.missed, *self.lengths, self.offset, self.scale, self.shape, self.shape_length, self.noise]
         )
 
     @classmethod
     def of_logarithms(cls, x: np.ndarray) -> Components:
         """The components from their logarithms."""
         size = np.exp(x).tolist()
-        return cls(size[0], tuple(size[1:-6]), *size[-6:])
+        return cls(size[0], tuple(size[1:-5]), *size[-5:])
 
     def run_variance(self, force: np.ndarray) -> np.ndarray:
         """Variance (n,) of a new run around the mean of all runs, at points with the given force (n,)."""
@@ -79,7 +77,6 @@ def variances(x: np.ndarray, smooth: SmoothFunctions) -> tuple[Variances, np.nda
     by_common = np.zeros((len(share), len(x)))
     by_common[:, 0] = 2.0
     by_common[:, 1 : 1 + d] = by_length
-    by_common[smooth.asymmetric, 1 + d] = 2.0
     exponent = -0.5 * (np.pi * np.arange(1, q + 1) * np.exp(x[-2])) ** 2
     total = float(np.log(np.sum(np.exp(exponent))))
     own = np.concatenate([2.0 * x[-5:-3], 2.0 * x[-3] + exponent - total])
@@ -87,7 +84,7 @@ def variances(x: np.ndarray, smooth: SmoothFunctions) -> tuple[Variances, np.nda
     by_own[0, -5] = by_own[1, -4] = 2.0
     by_own[2:, -3] = 2.0
     by_own[2:, -2] = 2.0 * (exponent - np.exp(exponent - total) @ exponent)
-    return Variances(2.0 * x[0] + share + 2.0 * x[1 + d] * smooth.asymmetric, own, 2.0 * float(x[-1])), by_common, by_own
+    return Variances(2.0 * x[0] + share, own, 2.0 * float(x[-1])), by_common, by_own
 
 
 def with_further(given: Variances, further: np.ndarray) -> Variances:
@@ -153,4 +150,4 @@ def _bounds(smooth: SmoothFunctions, misfit: float) -> list[tuple[float, float]]
     missed = (tiny, 3.0 * misfit)
     lengths = [(one.spacing, constants.LONGEST_LENGTH * one.width) for one in smooth.inputs]
     of_runs = [(tiny, misfit), (1e-6, float(constants.LARGEST_RUN_SCALE)), (tiny, misfit), (0.05, 1.0)]
-    return [tuple(np.log(pair).tolist()) for pair in [missed, *lengths, (0.01, 1.0), *of_runs, (1e-3, 1e3)]]
+    return [tuple(np.log(pair).tolist()) for pair in [missed, *lengths, *of_runs, (1e-3, 1e3)]]

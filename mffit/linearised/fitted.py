@@ -17,6 +17,7 @@ from mffit.linearised.mixed import LeftOutReadings, Mixed, MixedPosterior, Varia
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
 from mffit.points.noise import stating
+from mffit.quantities import REVERSED_BY_A_MIRROR
 from mffit.rig import Simulation
 from mffit.rig_errors import ZEROS, Place, error_of
 from mffit.scatter import rms, robust
@@ -265,8 +266,9 @@ class _Sight(NamedTuple):
     near: Mapping[str, Components]  #: by channel
     looked_at: dict[tuple[bytes, int], _LookedAt]  #: cache by the rows, which are equal for most channels
 
-    def at(self, rows: np.ndarray, sign: int) -> _LookedAt:
-        """The points of some rows (n,) with their smooth functions, cached."""
+    def at(self, rows: np.ndarray, channel: str) -> _LookedAt:
+        """The points of some rows (n,) with the smooth functions of a channel, cached."""
+        sign = -1 if channel in REVERSED_BY_A_MIRROR else 1
         key = (rows.tobytes(), sign)
         known = self.looked_at.get(key)
         if known is None:
@@ -300,7 +302,7 @@ def _channel(
     every = np.flatnonzero(used)
     stride = max(1, -(-len(every) // int(constants.POINTS_EXAMINED)))
     rows = every[::stride]
-    part, smooth, functions, place = sight.at(rows, -1 if name in ('Fy', 'Mz', 'Mx') else 1)
+    part, smooth, functions, place = sight.at(rows, name)
     residual = part.channel(name) - model[rows]
     stated = part.u(name)
     usual = float(np.median(sigma[rows]))

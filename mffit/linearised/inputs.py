@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,9 +28,9 @@ OTHER_WORDS: Mapping[str, str] = {
     "sense": "sense of the sweeps",
 }
 ALSO: tuple[str, ...] = ("phi_t", "T", "direction", "mount")
-"""Further conditions, each used only if it varies; the curvature of a path is always one, see :data:`MIRRORED`."""
-MIRRORED: frozenset[str] = frozenset({"alpha", "gamma", "phi_t", "mount"})
-"""Conditions that a mirror reverses; what it makes of a reading was tested as well as the reading."""
+"""Further conditions, each used only if it varies."""
+REVERSED: frozenset[str] = frozenset({"alpha", "gamma", "phi_t"})
+"""Conditions that a mirror reverses."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,9 @@ class Input:
     spacing: float  #: distance of neighbouring settings, the shortest length scale
     averaged: tuple[float, ...] = ()
     """Values over which a prediction averages if it does not state the condition; empty if predictions always state it."""
-    is_held: bool = True  #: whether every sweep holds the condition constant, at one of few settings
+    mirrored: bool = (
+        False  #: whether the mirror images of the readings count as tested, which have the other sign of it
+    )
 
     @property
     def width(self) -> float:
@@ -51,9 +53,9 @@ class Input:
         return self.upper - self.lower
 
     @property
-    def is_mirrored(self) -> bool:
-        """Whether a mirror reverses the condition."""
-        return self.name in MIRRORED
+    def is_held(self) -> bool:
+        """Whether every sweep holds the condition constant, at one of few settings."""
+        return self.spacing > 1.5 * self.width / constants.DIVISIONS_OF_A_SWEEP
 
 
 def word_of(name: str) -> str:
@@ -62,7 +64,11 @@ def word_of(name: str) -> str:
 
 
 def inputs_of(points: Points) -> tuple[Input, ...]:
-    """The conditions that vary in these points."""
+    """The conditions that vary in these points.
+
+    On one side of a disc the mirror images of the readings count too: those of the other side, between which the straight road
+    lies.
+    """
     found = []
     for name, kind in LEVELS.items():
         values = getattr(points, name)
@@ -75,9 +81,6 @@ def inputs_of(points: Points) -> tuple[Input, ...]:
         found.append(_input(name, values, most if is_swept else min(steps, most)))
     for name in ALSO:
         values = np.asarray(getattr(points, name), dtype=float)
-        if name == "phi_t" and np.any(values):
-            found.append(_input(name, values, 2))
-            continue
         if not np.all(np.isfinite(values)) or np.allclose(values, values[0]):
             continue
         if name == "T":
@@ -89,19 +92,22 @@ def inputs_of(points: Points) -> tuple[Input, ...]:
         senses = sense(points, swept_of(points, tuple(found)))
         if np.any(senses > 0.0) and np.any(senses < 0.0):
             found.append(Input("sense", -1.0, 1.0, 2.0, (-1.0, 1.0)))
+    if points.one_sided:
+        found = [_mirrored(one) if one.name in REVERSED else one for one in found]
+        end = float(np.max(np.abs(points.phi_t)))
+        found.append(Input("phi_t", -end, end, end, mirrored=True))
     return tuple(found)
+
+
+def _mirrored(one: Input) -> Input:
+    """The condition with a range that its mirror images have in common with it."""
+    end = max(-one.lower, one.upper)
+    return replace(one, lower=-end, upper=end, mirrored=True)
 
 
 def _input(name: str, values: np.ndarray, steps: int, averaged: tuple[float, ...] = ()) -> Input:
     low, high = float(values.min()), float(values.max())
-    end = max(-low, high)
-    spacing = (high - low) / steps
-    if name == "phi_t":
-        spacing = 2*end/steps
-    held = spacing > 1.5 * (high - low) / constants.DIVISIONS_OF_A_SWEEP
-    if name in MIRRORED:
-        low, high = -end, end
-    return Input(name, low, high, spacing, averaged, held)
+    return Input(name, low, high, (high - low) / steps, averaged)
 
 
 def _runs(points: Points) -> list[np.ndarray]:

@@ -27,28 +27,25 @@ class SmoothFunctions(ReadOnlyArrays):
 
     inputs: tuple[Input, ...]  #: (d,)
     orders: np.ndarray  #: (m, d) number of half waves of every function along every condition
-    sign: int = 0  #: by which a mirror multiplies the values of a symmetric tyre; 0 if nothing is mirrored
-
-    @property
-    def asymmetric(self) -> np.ndarray:
-        """Mask (m,) of the functions that a tyre lacks if its mirror image is the same tyre."""
-        mirrored = np.array([one.is_mirrored for one in self.inputs], dtype=bool)
-        found: np.ndarray = (-1) ** np.sum(self.orders[:, mirrored], axis=1) == -self.sign
-        return found
 
     @classmethod
-    def over(cls, inputs: tuple[Input, ...], sign: int = 0) -> SmoothFunctions:
-        """The basis functions with the largest prior variance at the shortest lengths."""
+    def over(cls, inputs: tuple[Input, ...], sign: int = 1) -> SmoothFunctions:
+        """The basis functions with the largest prior variance at the shortest lengths.
+
+        Of mirrored conditions, only those are used that a mirror multiplies by ``sign``.
+        """
         orders, size = np.zeros((1, 0), dtype=int), np.zeros(1)
         for one in inputs:  # further factors only reduce the variance, so small products are dropped at once
             order = np.arange(_most_half_waves(one) + 1)
             size = (size[:, None] + _log_spectrum(np.pi * order * one.spacing / _length(one))[0]).ravel()
             orders = np.column_stack([np.repeat(orders, len(order), axis=0), np.tile(order, len(orders))])
             orders, size = orders[size > -LEAST], size[size > -LEAST]
-        size = size + 2.0*np.log(0.3) * cls(inputs, orders, sign).asymmetric
-        orders, size = orders[size > -LEAST], size[size > -LEAST]
+        mirrored = np.array([one.mirrored for one in inputs], dtype=bool)
+        if mirrored.any():  # around the middle of its range, a cosine with an odd number of half waves is odd
+            symmetric = (-1) ** np.sum(orders[:, mirrored], axis=1) == sign
+            orders, size = orders[symmetric], size[symmetric]
         largest = np.argsort(-size, kind="stable")[: constants.FUNCTIONS]
-        return cls(inputs, orders[largest], sign)
+        return cls(inputs, orders[largest])
 
     def columns(self, at: np.ndarray) -> np.ndarray:
         """Values (n, m) at conditions (n, d), which are clipped to the tested range."""

@@ -44,29 +44,28 @@ class MissedChannel(ReadOnlyArrays):
         return np.asarray(own @ own.T)
 
     def at(
-        self, settings: np.ndarray, slopes: np.ndarray, path: np.ndarray, of_tyre: np.ndarray
+        self, settings: np.ndarray, slopes: np.ndarray, of_tyre: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The model error (n,), the variance of the tyre's force (n,), and the variance of a reading of it (n,).
 
         The estimate keeps the file's coefficients, so it is 0 where the formula describes the tyre exactly; errors of the
         coefficients count in the variance. ``slopes`` (n, k) are derivatives of the force at the conditions ``settings`` (n,
-        d), ``path`` (n,) is the correlation of the model error with that on the measured path, ``of_tyre`` (k,) the mask of the
-        coefficients.
+        d), ``of_tyre`` (k,) is the mask of the coefficients.
         """
-        likeness, functions = self._functions(settings, path)
+        likeness, functions = self._functions(settings)
         of_functions, of_numbers = np.split(self.root, [len(self.missed)])
         missed = functions @ of_functions
         mean, reading = (np.sum((missed + by @ of_numbers) ** 2, axis=1) for by in (slopes * of_tyre, slopes))
         unlike = (1.0 - likeness**2) * self.components.missed**2
         return functions @ self.missed, mean + unlike, reading + unlike
 
-    def mean(self, settings: np.ndarray, path: np.ndarray) -> np.ndarray:
+    def mean(self, settings: np.ndarray) -> np.ndarray:
         """The model error (n,) alone, as in :meth:`at`."""
-        return np.asarray(self._functions(settings, path)[1] @ self.missed)
+        return np.asarray(self._functions(settings)[1] @ self.missed)
 
-    def _functions(self, settings: np.ndarray, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _functions(self, settings: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Correlation (n,) with the model error at the nearest tested conditions, and the functions (n, m) times it."""
-        likeness = path * self.smooth.likeness(settings, np.array(self.components.lengths))
+        likeness = self.smooth.likeness(settings, np.array(self.components.lengths))
         return likeness, likeness[:, None] * self.smooth.columns(settings)
 
 
@@ -184,8 +183,7 @@ class Predictor:
     def missed(self, name: str, points: Points) -> np.ndarray:
         """The estimated model error (n,) of a channel, averaged over conditions that are not stated."""
         channel = self.channels[name]
-        path = self._of_path(channel, points)
-        found = [channel.mean(settings, path) for settings in _settings(points, channel.smooth.inputs)]
+        found = [channel.mean(settings) for settings in _settings(points, channel.smooth.inputs)]
         return np.asarray(np.mean(found, axis=0))
 
     def points(self, tyre: Tyre, conditions: pd.DataFrame) -> Points:
@@ -215,20 +213,12 @@ class Predictor:
 
         The variance of a reading includes the scatter over the conditions that are not stated.
         """
-        path, of_tyre = self._of_path(channel, points), np.array([error_of(n) is None for n in self.names])
+        of_tyre = np.array([error_of(n) is None for n in self.names])
         found = [
-            channel.at(settings, slopes, path, of_tyre)
-            for settings in _settings(points, channel.smooth.inputs)
+            channel.at(settings, slopes, of_tyre) for settings in _settings(points, channel.smooth.inputs)
         ]
         means, variances, readings = (np.array(own) for own in zip(*found, strict=True))
         return means.mean(axis=0), variances.mean(axis=0), readings.mean(axis=0) + means.var(axis=0)
-
-    def _of_path(self, channel: MissedChannel, points: Points) -> np.ndarray:
-        """Correlation (n,) of the model error with that on the measured path, with the path's curvature as length scale."""
-        if not self.curved or any(one.name == "phi_t" for one in channel.smooth.inputs):
-            return np.ones(len(points))
-        found: np.ndarray = np.exp(-0.5 * (points.phi_t / self.path - 1.0) ** 2)
-        return found
 
 
 def _mixed(each: Sequence[PredictedForce]) -> PredictedForce:

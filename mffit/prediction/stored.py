@@ -48,7 +48,6 @@ def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
             name: {
                 "inputs": [asdict(one) for one in own.smooth.inputs],
                 "orders": own.smooth.orders.tolist(),
-                "sign": own.smooth.sign,
                 "components": asdict(own.components),
                 "missed": own.missed.tolist(),
                 "root": _text(own.root),
@@ -153,9 +152,7 @@ def _channel(own: dict[str, Any], coefficients: int) -> MissedChannel:
     inputs = tuple(Input(**{**one, "averaged": tuple(one["averaged"])}) for one in own["inputs"])
     missed = np.array(own["missed"], dtype=float)
     return MissedChannel(
-        smooth=SmoothFunctions(
-            inputs, np.array(own["orders"], dtype=int).reshape(len(missed), len(inputs)), int(own["sign"])
-        ),
+        smooth=SmoothFunctions(inputs, np.array(own["orders"], dtype=int).reshape(len(missed), len(inputs))),
         components=Components(**{**own["components"], "lengths": tuple(own["components"]["lengths"])}),
         missed=missed,
         root=_array(own["root"], len(missed) + coefficients),

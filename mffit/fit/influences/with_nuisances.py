@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mffit.config import Config
-from mffit.fit.coverage import UNSEEN, one_sided
+from mffit.fit.coverage import UNSEEN
 from mffit.fit.fitted import Fitted, left_by
 from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, choose
 from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
@@ -46,7 +46,7 @@ def fit_with_nuisances(
     if not config.rig.on_disc and len(problem.points.used_setups) < 2 and one_mount:
         fitted, plan, left = with_known_zeros(fitted, problem, plan)
     found = replace(_with_influences(config, problem, plan, fitted, progress), left=left)
-    unseen = plan.asymmetries if one_sided(problem.points) else []
+    unseen = plan.asymmetries if problem.points.one_sided else []
     if not unseen:
         return found
     left = left_by(found.full)
@@ -54,8 +54,8 @@ def fit_with_nuisances(
         return replace(found, left=left)
     plan = plan.holding(unseen, UNSEEN)
     symmetric = {name: plan.expected.get(name, problem.value(name)) for name in unseen}
-    here = replace(problem, simulation=found.plain.simulation).with_values(symmetric)
-    return _with_influences(config, problem, plan, polish(here, plan), progress)
+    begin = first_fit(problem.with_values(symmetric), {**start, **symmetric}, plan)
+    return _with_influences(config, problem, plan, begin, progress)
 
 
 def _with_influences(
