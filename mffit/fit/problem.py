@@ -18,6 +18,7 @@ from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.rig.rig_numbers import known_faults, known_zeros
 from mffit.fit.wheel.rolling import effective_radius
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, condensed
+from mffit.linearised.inputs import places
 from mffit.measured import Measured, RadiusReading, radius_readings
 from mffit.points import Points
 from mffit.points.noise import estimated_noise, stating
@@ -77,9 +78,10 @@ class FitProblem(ReadOnlyArrays):
         their sweep where it turns back are weighted by their own scatter.
         """
         sigma, misfit = {}, self.misfit()
+        place = places(self.points)
         for name, turning in self.turning(misfit).items():
             z, least = misfit[name], self.nominal.get(name, np.ones_like(misfit[name]))
-            factor = weights.enlarged(np.where(turning, 0.0, z), self.points.sweep, least)
+            factor = weights.enlarged(np.where(turning, 0.0, z), self.points.sweep, place, least)
             if np.any(turning):
                 factor = np.where(turning, factor * max(rms(z[turning]) / rms(z[~turning]), 1.0), factor)
             sigma[name] = self.sigma[name] * factor

@@ -6,6 +6,10 @@ An outlier, a single reading far from both the model and its neighbours in the s
 
 from __future__ import annotations
 
+import itertools
+import math
+from typing import NamedTuple
+
 import numpy as np
 from scipy.special import ndtri
 
@@ -34,62 +38,100 @@ def huber(residual: np.ndarray, scale: float) -> np.ndarray:
     return np.asarray(np.sqrt(np.maximum(size, 1.0)))
 
 
-def enlarged(residual: np.ndarray, sweep: np.ndarray, least: np.ndarray | float = 1.0) -> np.ndarray:
+def enlarged(
+    residual: np.ndarray, sweep: np.ndarray, place: np.ndarray, least: np.ndarray | float = 1.0
+) -> np.ndarray:
     """Factor (n,) on the uncertainty of each point, infinite for outliers.
 
-    Residuals are in units of the uncertainty, 0 where a point is not used; ``sweep`` (n,) is the index of each point's sweep.
-    ``least`` (n,) is the smallest scale used to detect outliers.
+    Residuals are in units of the uncertainty, 0 where a point is not used; ``sweep`` (n,) is the index of each point's sweep,
+    ``place`` (n, d) its conditions, over the tested ranges. ``least`` (n,) is the smallest scale used to detect
+    outliers.
     """
     scale = max(robust_scale(residual), 1.0)
     factor = scale * huber(residual, scale)
-    return np.where(outlying(residual, np.maximum(scale, least), sweep, least), np.inf, factor)
+    return np.where(outlying(residual, sweep, place, least), np.inf, factor)
 
 
 def outlying(
-    residual: np.ndarray, scale: np.ndarray | float, sweep: np.ndarray, least: np.ndarray | float = 1.0
+    residual: np.ndarray, sweep: np.ndarray, place: np.ndarray, least: np.ndarray | float = 1.0
 ) -> np.ndarray:
-    """Mask (n,) of single readings that contradict both the model and their neighbours in the sweep.
+    """Mask (n,) of single readings that contradict their neighbours in the sweep.
 
-    Residuals are as in :func:`enlarged`, in the order of measuring; ``scale`` is the standard deviation of their core.
+    What a formula misses is smooth over the conditions (a Matern covariance of order 5/2), with the size and the length with
+    which neighbours predict best: a reading at the end of a sweep, after a long last step, is hardly predicted. Arrays are as in
+    :func:`enlarged`, in the order of measuring.
     """
-    used = np.flatnonzero(residual != 0.0)
     out = np.zeros(len(residual), dtype=bool)
-    if not len(used):
-        return out
+    used = np.flatnonzero(residual != 0.0)
     used = used[np.argsort(sweep[used], kind="stable")]
-    scale, least = (np.broadcast_to(x, len(residual))[used] for x in (scale, least))
-    apart = residual[used] - _expected_from_neighbours(residual[used], sweep[used])
-    known = np.isfinite(apart)
     # At least the stated uncertainty: without noise, every tiny difference would count as an outlier.
-    local = np.maximum(robust_scale(apart[known]), least)
-    far = float(-ndtri(PREDICTION_FALSE_ALARM / (2.0 * len(used))))
-    out[used] = known & (np.abs(apart) > far * local) & (np.abs(residual[used]) > far * scale)
-    return out
+    noise = np.broadcast_to(least, len(residual))
+    far = float(-ndtri(PREDICTION_FALSE_ALARM / (2.0 * max(len(used), 1))))
+    size_and_length = None
+    while True:
+        beside = _Beside.of(residual[used], sweep[used], place[used], noise[used])
+        rows = np.flatnonzero(np.sum(beside.inside, axis=1) >= 2)
+        if not len(rows):
+            return out
+        size_and_length = size_and_length or beside.likeliest(rows)
+        error, u = beside.predicted(rows, *size_and_length)
+        z = np.zeros(len(used))
+        z[rows] = np.abs(error) / u
+        z[z <= far * max(robust_scale(z), 1.0)] = 0.0
+        # An outlier is a wrong neighbour too, so of neighbours only the worst is one, and the others are asked again.
+        worst = (z > 0.0) & (z >= np.max(np.where(beside.inside, z[beside.there], 0.0), axis=1))
+        if not np.any(worst):
+            return out
+        out[used[worst]] = True
+        used = used[~worst]
 
 
-def _expected_from_neighbours(residual: np.ndarray, sweep: np.ndarray) -> np.ndarray:
-    """Residual (n,) expected from the neighbours in the sweep; NaN with fewer than two neighbours.
+class _Beside(NamedTuple):
+    """Readings (n,) with their neighbours (n, k)."""
 
-    It is their median, or the line through two of them if it is closer to the point's own residual: along a stretch that the
-    model misses, residuals follow a line, and at the end of a sweep all neighbours lie on one side.
-    """
-    n, offsets = len(residual), constants.OUTLIER_NEIGHBOURS
-    beside = np.full((n, len(offsets)), np.nan)
-    for k, offset in enumerate(offsets):
-        there = np.arange(n) + offset
+    residual: np.ndarray
+    noise: np.ndarray
+    there: np.ndarray  #: indices of the neighbours
+    inside: np.ndarray  #: whether there is such a neighbour
+    place: np.ndarray  #: (n, d)
+
+    @classmethod
+    def of(cls, residual: np.ndarray, sweep: np.ndarray, place: np.ndarray, noise: np.ndarray) -> _Beside:
+        """The readings of sweeps (n,), in order."""
+        n = len(residual)
+        there = np.arange(n)[:, None] + np.array(constants.OUTLIER_NEIGHBOURS, dtype=int)
         inside = (there >= 0) & (there < n)
-        inside[inside] = sweep[there[inside]] == sweep[inside]
-        beside[inside, k] = residual[there[inside]]
-    enough = np.sum(np.isfinite(beside), axis=1) >= 2
-    out = np.full(n, np.nan)
-    out[enough] = np.nanmedian(beside[enough], axis=1)
-    far_before, before, after, far_after = beside.T
-    between = (before + after) / 2.0
-    ahead, behind = 2.0 * before - far_before, 2.0 * after - far_after
-    for line in (
-        between,
-        np.where(np.isnan(after), ahead, np.nan),
-        np.where(np.isnan(before), behind, np.nan),
-    ):
-        out = np.where(np.abs(residual - line) < np.abs(residual - out), line, out)
-    return out
+        there = np.clip(there, 0, max(n - 1, 0))
+        return cls(residual, noise, there, inside & (sweep[there] == sweep[:, None]), place)
+
+    def likeliest(self, rows: np.ndarray) -> tuple[float, float]:
+        """Size and length of what the formula misses, by the predictions of some of the ``rows``."""
+        some = rows[:: max(1, len(rows) // int(constants.READINGS_OF_A_LENGTH))]
+        core = robust_scale(self.residual)
+        tried = itertools.product(constants.SIZES_OF_A_MISS, constants.LENGTHS_OF_A_MISS)
+        return max(((core * a, b) for a, b in tried), key=lambda at: self._likelihood(some, *at))
+
+    def predicted(self, rows: np.ndarray, size: float, length: float) -> tuple[np.ndarray, np.ndarray]:
+        """Errors (m,) of the predictions of some rows from their neighbours, and their standard deviations (m,)."""
+        there, inside = self.there[rows], self.inside[rows]
+
+        def alike(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+            d = math.sqrt(5.0) * np.sqrt(np.sum((a - b) ** 2, axis=-1)) / length
+            return np.asarray(size**2 * (1.0 + d + d**2 / 3.0) * np.exp(-d))
+
+        at, beside = self.place[rows], self.place[there]
+        across = alike(at[:, None, :], beside) * inside
+        among = alike(beside[:, :, None, :], beside[:, None, :, :]) * (
+            inside[:, :, None] & inside[:, None, :]
+        )
+        places = np.arange(there.shape[1])
+        among[:, places, places] = np.where(inside, size**2 + self.noise[there] ** 2, 1.0)
+        weights = np.linalg.solve(among, across[:, :, None])[:, :, 0]
+        error = self.residual[rows] - np.sum(weights * self.residual[there] * inside, axis=1)
+        variance = size**2 + self.noise[rows] ** 2 - np.sum(weights * across, axis=1)
+        return error, np.sqrt(variance)
+
+    def _likelihood(self, rows: np.ndarray, size: float, length: float) -> float:
+        """Log likelihood of the predictions of some rows, with tails so heavy that outliers do not count."""
+        error, u = self.predicted(rows, size, length)
+        return float(-np.sum(np.log(u) + constants.TAILS_OF_A_MISS * np.log1p((error / u) ** 2 / 3.0)))
