@@ -67,14 +67,16 @@ def outlying(
     # At least the stated uncertainty: without noise, every tiny difference would count as an outlier.
     noise = np.broadcast_to(least, len(residual))
     far = float(-ndtri(PREDICTION_FALSE_ALARM / (2.0 * max(len(used), 1))))
-    size_and_length = None
+    miss: np.ndarray | None = None
     while True:
         beside = _Beside.of(residual[used], sweep[used], place[used], noise[used])
         rows = np.flatnonzero(np.sum(beside.inside, axis=1) >= 2)
         if not len(rows):
             return out
-        size_and_length = size_and_length or beside.likeliest(rows)
-        error, u = beside.predicted(rows, *size_and_length)
+        if miss is None:
+            miss = np.empty((len(residual), 2))
+            miss[used] = beside.likeliest(rows, sweep[used])
+        error, u = beside.predicted(rows, *miss[used[rows]].T)
         z = np.zeros(len(used))
         z[rows] = np.abs(error) / u
         z[z <= far * max(robust_scale(z), 1.0)] = 0.0
@@ -104,20 +106,37 @@ class _Beside(NamedTuple):
         there = np.clip(there, 0, max(n - 1, 0))
         return cls(residual, noise, there, inside & (sweep[there] == sweep[:, None]), place)
 
-    def likeliest(self, rows: np.ndarray) -> tuple[float, float]:
-        """Size and length of what the formula misses, by the predictions of some of the ``rows``."""
-        some = rows[:: max(1, len(rows) // int(constants.READINGS_OF_A_LENGTH))]
-        core = robust_scale(self.residual)
-        tried = itertools.product(constants.SIZES_OF_A_MISS, constants.LENGTHS_OF_A_MISS)
-        return max(((core * a, b) for a, b in tried), key=lambda at: self._likelihood(some, *at))
+    def likeliest(self, rows: np.ndarray, sweep: np.ndarray) -> np.ndarray:
+        """Size and length (n, 2) of what the formula misses, by the predictions of some of the ``rows``.
 
-    def predicted(self, rows: np.ndarray, size: float, length: float) -> tuple[np.ndarray, np.ndarray]:
-        """Errors (m,) of the predictions of some rows from their neighbours, and their standard deviations (m,)."""
+        They are those of all sweeps (n,), but for a sweep that others clearly suit better.
+        """
+        some = rows[:: max(1, len(rows) // int(constants.READINGS_OF_A_LENGTH))]
+        sizes = robust_scale(self.residual) * np.array(constants.SIZES_OF_A_MISS)
+        tried = list(itertools.product(sizes.tolist(), constants.LENGTHS_OF_A_MISS))
+        each = np.array([self._log_likelihood(some, *one) for one in tried])
+        names, of_sweep = np.unique(sweep[some], return_inverse=True)
+        own = np.array([np.bincount(of_sweep, row, len(names)) for row in each])
+        common = int(np.argmax(own.sum(axis=1)))
+        best = np.argmax(own, axis=0)
+        gain = own[best, np.arange(len(names))] - own[common]
+        best = np.where(gain > constants.GAIN_OF_OWN_MISS, best, common)
+        return np.array(tried)[best[np.searchsorted(names, sweep).clip(0, len(names) - 1)]]
+
+    def predicted(
+        self, rows: np.ndarray, size: np.ndarray | float, length: np.ndarray | float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Errors (m,) of the predictions of some rows from their neighbours, and their standard deviations (m,).
+
+        ``size`` (m,) and ``length`` (m,) are those of what the formula misses.
+        """
         there, inside = self.there[rows], self.inside[rows]
+        size, length = np.broadcast_to(size, len(rows)), np.broadcast_to(length, len(rows))
 
         def alike(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-            d = math.sqrt(5.0) * np.sqrt(np.sum((a - b) ** 2, axis=-1)) / length
-            return np.asarray(size**2 * (1.0 + d + d**2 / 3.0) * np.exp(-d))
+            each = (-1, *[1] * (max(a.ndim, b.ndim) - 2))
+            d = math.sqrt(5.0) * np.sqrt(np.sum((a - b) ** 2, axis=-1)) / length.reshape(each)
+            return np.asarray(size.reshape(each) ** 2 * (1.0 + d + d**2 / 3.0) * np.exp(-d))
 
         at, beside = self.place[rows], self.place[there]
         across = alike(at[:, None, :], beside) * inside
@@ -125,13 +144,13 @@ class _Beside(NamedTuple):
             inside[:, :, None] & inside[:, None, :]
         )
         places = np.arange(there.shape[1])
-        among[:, places, places] = np.where(inside, size**2 + self.noise[there] ** 2, 1.0)
+        among[:, places, places] = np.where(inside, size[:, None] ** 2 + self.noise[there] ** 2, 1.0)
         weights = np.linalg.solve(among, across[:, :, None])[:, :, 0]
         error = self.residual[rows] - np.sum(weights * self.residual[there] * inside, axis=1)
         variance = size**2 + self.noise[rows] ** 2 - np.sum(weights * across, axis=1)
         return error, np.sqrt(variance)
 
-    def _likelihood(self, rows: np.ndarray, size: float, length: float) -> float:
-        """Log likelihood of the predictions of some rows, with tails so heavy that outliers do not count."""
+    def _log_likelihood(self, rows: np.ndarray, size: float, length: float) -> np.ndarray:
+        """Log likelihood (m,) of the predictions of some rows, with tails so heavy that outliers do not count."""
         error, u = self.predicted(rows, size, length)
-        return float(-np.sum(np.log(u) + constants.TAILS_OF_A_MISS * np.log1p((error / u) ** 2 / 3.0)))
+        return np.asarray(-np.log(u) - constants.TAILS_OF_A_MISS * np.log1p((error / u) ** 2 / 3.0))
