@@ -9,13 +9,13 @@ import numpy as np
 
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.problem import FitProblem
-from mffit.fit.stages import ODD_TERMS
+from mffit.fit.stages import is_asymmetry
 from mffit.fit.told import Priors, numbers_told, told_by_sweeps
 from mffit.least_squares import FreeNumber, solve
 from mffit.linearised import LinearisedFit, Uncertain, linearised
 from mffit.numbers import Numbers
 from mffit.rig import Simulation
-from mffit.rig_errors import ZEROS, error_of
+from mffit.rig_errors import error_of
 from tir.parameters import BY_NAME
 
 SPIN = ("PECP1", "PECP2")
@@ -103,10 +103,11 @@ def left_by(
     free = fitted.problem.starting_here(fitted.numbers)
     numbers = [uncertain(n) for n in free if error_of(n.name) or n.name not in fitted.at_bound]
     problem = of or fitted.problem
+    # What the readings tell of asymmetries beside the model error narrows them, though their values stay.
     beside = problem.points.one_sided
     numbers += [
-        Uncertain(n, 0.0, u, held=not (beside and (n in ODD_TERMS or error_of(n) in ZEROS)))
-        for n, u in fitted.taken_as_exact.items()
+        Uncertain(name, 0.0, u, held=not (beside and is_asymmetry(name)))
+        for name, u in fitted.taken_as_exact.items()
     ]
     return linearised(problem.points, fitted.simulation, problem.sigma, numbers, without=without, near=near)
 

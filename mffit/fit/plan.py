@@ -18,12 +18,11 @@ from mffit.fit.priors import scatter as scatter_of
 from mffit.fit.problem import FitProblem
 from mffit.fit.rig.rig_numbers import held_rig, rig_numbers, unseen_zeros
 from mffit.fit.rig.zeros import TurningZeros
-from mffit.fit.stages import BY_STAGE, ODD_TERMS
+from mffit.fit.stages import BY_STAGE, ODD_TERMS, is_asymmetry
 from mffit.least_squares import EXACT, FreeNumber
 from mffit.measured import Measured
 from mffit.points import Points
 from mffit.quantities import CHANNELS, SIDEWAYS
-from mffit.rig_errors import ZEROS, error_of
 from tir.parameters import BY_NAME
 
 
@@ -51,8 +50,8 @@ class FitPlan:
     @property
     def asymmetries(self) -> list[str]:
         """Free numbers that are zero for a tyre of perfect mirror symmetry on a rig without zeros, but for those set by hand."""
-        odd = [name for name in self.free if name in ODD_TERMS and name not in self.hand.names]
-        return [*odd, *(number.name for number in self.rig if error_of(number.name) in ZEROS)]
+        free = (*self.free, *(number.name for number in self.rig))
+        return [name for name in free if is_asymmetry(name) and name not in self.hand.names]
 
     def holding(self, names: Collection[str], why: str) -> FitPlan:
         """The plan with some free numbers held, with the uncertainty of their priors; ``why`` their coverage says."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mffit.rig_errors import ZEROS, error_of
 from tir.parameters import TABLE
 
 
@@ -47,6 +48,13 @@ ODD_TERMS = frozenset(row.name for row in TABLE if row.odd)
 SMALL_ON_A_DISC = {row.name: row.disc_spread for row in TABLE if row.disc_spread is not None}
 """Prior standard deviation, from road tyres, of coefficients that a disc cannot separate from a larger effect: conicity from the
 turn-slip force, ply-steer from the zero of the sideslip axis."""
+
+
+def is_asymmetry(number: str) -> bool:
+    """Whether a number is zero for a tyre of perfect mirror symmetry on a rig whose zeros are right."""
+    return number in ODD_TERMS or error_of(number) in ZEROS
+
+
 OF_CAMBER_OR_SPIN = frozenset(
     row.name for row in TABLE for need in row.needs if need.word in ("camber", "coupled", "curvature")
 )

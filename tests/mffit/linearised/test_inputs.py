@@ -96,3 +96,15 @@ def test_a_condition_that_runs_move_through_is_swept_however_few_its_settings():
     }
     assert found["alpha"].width / found["alpha"].spacing == pytest.approx(12.0)
     assert found["Fz"].width / found["Fz"].spacing == pytest.approx(2.0)
+
+
+def test_one_side_of_a_disc_was_tested_on_the_other_side_too():
+    """With its mirror image each reading has the other sign of sideslip, camber and curvature."""
+    found = {one.name: one for one in inputs_of(programme(phi_t=-0.75))}
+    ends = {name: (one.lower, one.upper) for name, one in found.items() if one.mirrored}
+    assert ends == {"alpha": (-0.1, 0.1), "gamma": (-0.05, 0.05), "phi_t": (-0.75, 0.75)}
+    assert not any(one.mirrored for one in inputs_of(programme()))  # a straight path is its own mirror image
+    both = np.repeat([0.75, -0.75], 63)
+    assert not any(one.mirrored for one in inputs_of(programme(phi_t=both)))
+    turned = np.repeat([1, -1], 63)
+    assert not any(one.mirrored for one in inputs_of(programme(phi_t=-0.75, mount=turned)))

@@ -81,3 +81,18 @@ def test_many_conditions_keep_to_the_largest_functions():
     assert len(smooth.orders) == constants.FUNCTIONS
     shares = smooth.log_variance(np.full(10, 1.0))[0]
     assert shares.max() < 0.0
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_functions_of_mirrored_conditions_have_the_symmetry_of_the_channel(sign):
+    alpha, path = (
+        Input("alpha", -0.2, 0.2, 0.05, mirrored=True),
+        Input("phi_t", -0.75, 0.75, 0.75, mirrored=True),
+    )
+    smooth = SmoothFunctions.over((alpha, LOAD, path), sign)
+    at = np.random.default_rng(3).uniform([-0.2, 1000.0, -0.75], [0.2, 3000.0, 0.75], (20, 3))
+    assert len(smooth.orders) > 10
+    assert smooth.columns(at * [-1.0, 1.0, -1.0]) == pytest.approx(sign * smooth.columns(at), abs=1e-12)
+    assert np.any(
+        np.abs(smooth.columns(np.array([[0.0, 2000.0, -0.75]]))) > 0.1
+    )  # turn slip alone has a force

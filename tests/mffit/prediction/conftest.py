@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import tomli_w
+from brush import SLIP, Brush
 from small_rigs import disc, simulated
 
 import mffit
@@ -92,6 +93,49 @@ def belt(
 def build(path: Path) -> Built:
     out = path.parent / "out"
     return Built(mffit.build(path, out, with_report=False), out)
+
+
+DISC = 1.323
+"""Radius of the path on the disc [m]."""
+
+
+def disc_of_a_brush(folder: Path, tyre: Brush) -> Path:
+    """Sweeps of a symmetric brush tyre on one side of a disc, without errors of the rig; returns ``tyre.toml``."""
+    random, files = np.random.default_rng(5), []
+    lean = np.array([5.0, 10.0, 15.0, 20.0, 30.0, 40.0])
+    plan = {
+        "sideslip": (np.array(SLIP, dtype=float), 0.0),
+        "camber": (0.0, np.concatenate([-lean[::-1], [0.0], lean])),
+    }
+    plan |= {f"{way}_roll": (np.linspace(-1.0, 1.0, 5), 0.0) for way in ("forward", "backward")}
+    plan |= {f"leaned_{g}": (np.array(SLIP, dtype=float), float(g)) for g in (-30, -15, 15, 30)}
+    folder.mkdir(parents=True)
+    for load in (1000.0, 1700.0, 2600.0):
+        for name, angles in plan.items():
+            alpha, gamma = np.broadcast_arrays(*angles)
+            way = -1.0 if name == "backward_roll" else 1.0
+            Fy, Mz = tyre.forces(
+                *np.radians((alpha, gamma)), np.full(len(alpha), load), phi_t=-1.0 / DISC, direction=way
+            )
+            table = {"alpha_deg": alpha, "gamma_deg": gamma, "Fz_N": load, "p_kPa": 250.0, "V_mps": 6.0,
+                     "direction": "forward" if way > 0.0 else "backward",
+                     "Fy_N": Fy + 6.0 * random.standard_normal(len(Fy)), "Mz_Nm": Mz + 0.3 * random.standard_normal(len(Fy)),
+                     "u_Fy_N": 6.0, "u_Mz_Nm": 0.3}  # fmt: skip
+            files.append(f"{name}_{load:.0f}.csv")
+            pd.DataFrame(table).to_csv(folder / files[-1], index=False)
+    shape = {"unloaded_radius": 0.306, "width": 0.15, "rim_radius": 0.2159}
+    config = {
+        "tyre": {"name": "brush", "nominal_load": tyre.nominal, "nominal_pressure": 250.0, **shape},
+        "rig": {
+            "type": "rotating-disk", "axes": "iso", "path_centre": "left", "path_radius": DISC, "backlash_deg": 0.0,
+            "u_loadcell_offset_N": 10.0, "u_camber_alignment_deg": 0.5, "u_slip_alignment_N": 25.0,
+        },
+        "rolling_radius": {"load_N": tyre.nominal, "effective_radius": tyre.r_e, "u_effective_radius": 0.0005},
+        "sweep": [{"file": name} for name in files],
+    }  # fmt: skip
+    path = folder / "tyre.toml"
+    path.write_text(tomli_w.dumps(config))
+    return path
 
 
 @pytest.fixture(scope="session")
