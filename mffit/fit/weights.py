@@ -121,7 +121,9 @@ class _Beside(NamedTuple):
         best = np.argmax(own, axis=0)
         gain = own[best, np.arange(len(names))] - own[common]
         best = np.where(gain > constants.GAIN_OF_OWN_MISS, best, common)
-        return np.array(tried)[best[np.searchsorted(names, sweep).clip(0, len(names) - 1)]]
+        at = np.searchsorted(names, sweep).clip(0, len(names) - 1)
+        found: np.ndarray = np.array(tried)[np.where(names[at] == sweep, best[at], common)]
+        return found
 
     def predicted(
         self, rows: np.ndarray, size: np.ndarray | float, length: np.ndarray | float

@@ -59,6 +59,12 @@ def test_the_other_side_of_the_disc_is_the_mirror_image(built):
     assert one["Mz_best_Nm"].to_numpy() == pytest.approx(-other["Mz_best_Nm"].to_numpy(), abs=0.001)
 
 
+def test_without_a_path_the_prediction_is_on_that_of_the_readings(built):
+    at = {"alpha_deg": [3.0] * 2, "gamma_deg": 10.0, "Fz_N": 1700.0}
+    found = built.predict(**at, phi_t_per_m=[-1.0 / DISC, np.nan])
+    assert found["Fy_best_N"][0] == pytest.approx(found["Fy_best_N"][1])
+
+
 def test_beyond_the_curvature_of_the_disc_the_interval_grows(built):
     halves = [rms(errors(built, phi_t)[1]) for phi_t in (-1.0 / DISC, -2.0 / DISC, -4.0 / DISC)]
     assert halves[0] < halves[1] < halves[2]
