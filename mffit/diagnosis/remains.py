@@ -210,10 +210,10 @@ class Left(NamedTuple):
         """By channel, a change of the rows (m,) at the readings of the channel's linear model, in its unit."""
         sigma, out = self.joint.sigma, {}
         parts = dict(zip(self.joint.channels, change[: sigma.size].reshape(sigma.shape), strict=True))
-        for (name, part), u in zip(parts.items(), sigma, strict=True):
-            rows = self.linear.channels[name].rows
-            near = np.searchsorted(self.joint.looked_at, rows, side="right") - 1
-            out[name] = (part * np.where(np.isfinite(u), u, 0.0))[near]
+        u_of = dict(zip(self.joint.channels, sigma, strict=True))
+        for name, channel in self.linear.channels.items():  # only those that were measured
+            near = np.searchsorted(self.joint.looked_at, channel.rows, side="right") - 1
+            out[name] = (parts[name] * np.where(np.isfinite(u_of[name]), u_of[name], 0.0))[near]
         return out
 
 

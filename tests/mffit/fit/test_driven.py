@@ -10,7 +10,7 @@ import pytest
 from mffit.diagnosis.remains import Left, best_effect
 from mffit.fit.by_hand import NO_HAND
 from mffit.fit.coverage import coverage
-from mffit.fit.fitted import left_by
+from mffit.fit.fitted import Fitted, left_by
 from mffit.fit.known import known_before_fit
 from mffit.fit.plan import fit_plan
 from mffit.fit.problem import fit_problem
@@ -43,12 +43,16 @@ def test_the_errors_of_the_rig_in_mx_are_recovered(found):
     assert found.rig["crosstalk_Fx_Mx_m"][1] < 1e-4
 
 
+def without_crosstalk(fit: Fitted) -> Fitted:
+    """The same coefficients with a rig without crosstalk of Fx into Mx."""
+    name = "crosstalk_Fx_Mx_m"
+    numbers = [n for n in fit.numbers if n.name != name]
+    return replace(fit, problem=fit.problem.with_values({name: 0.0}), numbers=numbers)
+
+
 def test_an_undeclared_crosstalk_is_the_best_effect_in_the_residuals(found):
-    """At the same coefficients with a rig without it."""
     fit, name = found.search, "crosstalk_Fx_Mx_m"
-    unaware = replace(
-        fit, problem=fit.problem.with_values({name: 0.0}), numbers=[n for n in fit.numbers if n.name != name]
-    )
+    unaware = without_crosstalk(fit)
     best = best_effect(Left.of(unaware, left_by(unaware)))
     assert best.best.effect.id == "crosstalk-fx-mx"
     assert best.significant
@@ -58,6 +62,17 @@ def test_an_undeclared_crosstalk_is_the_best_effect_in_the_residuals(found):
     after = best_effect(Left.of(fit, left_by(fit)))
     assert after.best.effect.id != "crosstalk-fx-mx"
     assert not after.significant
+
+
+def test_an_effect_is_found_in_residuals_without_a_self_aligning_moment(found):
+    """Mz, without a reading, stays a channel of the fit."""
+    unaware = without_crosstalk(found.search)
+    problem, nothing = unaware.problem, np.full(len(unaware.problem.points), np.nan)
+    sigma = {**problem.sigma, "Mz": np.full(len(nothing), np.inf)}
+    blind = replace(unaware, problem=replace(problem, points=problem.points.replace(Mz=nothing), sigma=sigma))
+    best = best_effect(Left.of(blind, left_by(blind)))
+    assert best.best.effect.id == "crosstalk-fx-mx"
+    assert best.significant
 
 
 def test_the_forces_of_the_tyre_are_recovered_over_the_tested_range(found):
