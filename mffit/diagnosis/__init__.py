@@ -6,9 +6,10 @@ The modules in the order of the method (:mod:`engine` is the sequence):
 2. ``stated``, ``noise``: stated covariance of the readings. ``inexact``, ``priors``: priors of coefficients and rig.
 3. ``where``: regions in which measurement and simulation disagree.
 4. ``needs``, ``problem``, ``hypothesis``: candidates, and the fit and evidence of a set of effects.
-5. ``explain``: all effects fitted together, then the noise around them: ``learning``, ``scatter``, ``tails`` estimate its size,
-   its autocorrelation and offsets of runs. ``selection`` finds the most probable set of effects from the evidence of all sets
-   (``subsets``), in competition with unnamed structure (``smooth``, ``bumps``); ``prediction`` judges effects by left-out sweeps.
+5. ``search``, ``explain``: all effects fitted together, then the noise around them: ``learning``, ``scatter``, ``tails``
+   estimate its size, its autocorrelation and offsets of runs. ``selection`` finds the most probable set of effects from the
+   evidence of all sets (``subsets``), in competition with unnamed structure (``smooth``, ``bumps``); ``prediction`` judges
+   effects by left-out sweeps.
 6. ``rest``: what remains with the effects, and the four answers.
 7. ``validation``, ``repair``: the gap on left-out sweeps, and the effects and the file that are corrected.
 8. ``ties``, ``limits``: rivals of each effect, the run that separates them, sizes that are excluded.
@@ -24,7 +25,8 @@ from mffit.on_demand import on_demand
 if TYPE_CHECKING:
     from mffit.diagnosis.engine import diagnose
     from mffit.diagnosis.result import AcceptedEffect, Diagnosis, corrected_points
+    from mffit.diagnosis.search import Asked
     from mffit.diagnosis.validation import Gap, gap, validate
 
-__all__ = ["AcceptedEffect", "Diagnosis", "Gap", "corrected_points", "diagnose", "gap", "validate"]
+__all__ = ["AcceptedEffect", "Asked", "Diagnosis", "Gap", "corrected_points", "diagnose", "gap", "validate"]
 __getattr__ = on_demand(__name__)

@@ -9,18 +9,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.config import Config, axis_signs
+from mffit.config import axis_signs
 from mffit.diagnosis import constants, wording
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
-from mffit.diagnosis.limits import limits
+from mffit.diagnosis.limits import Limit, limits
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import DiagnosisNote
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
-from mffit.diagnosis.repair import Repair
+from mffit.diagnosis.repair import Outcome, Repair
 from mffit.diagnosis.rest import Answer, Rest
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis, apart
+from mffit.diagnosis.search import Search
 from mffit.diagnosis.tails import outlying
 from mffit.diagnosis.ties import separation
 from mffit.diagnosis.validation import Gap, gap, validate
@@ -55,42 +56,26 @@ def answered(
 
 
 def answer(
-    found: Explanation,
-    named: Sequence[AcceptedEffect],
-    rest: Sequence[Rest],
-    repair: Repair,
-    given: DiagnosisProblem,
-    tyre: Tyre,
-    config: Config,
-    notes: Sequence[DiagnosisNote],
-    candidates: Sequence[Effect],
-    alternatives: Mapping[str, float],
-    gap_before: Gap,
-    seen: bool,
+    search: Search, outcome: Outcome, repair: Repair, notes: Sequence[DiagnosisNote], gap_before: Gap
 ) -> Diagnosis:
-    """The record of an explanation.
-
-    ``found`` is the explanation that left-out sweeps confirm, with the ``named`` effects, what it leaves (``rest``) and the
-    confidence of the ``alternatives`` by id; ``given`` is the problem of the given model; ``gap_before`` is the gap of all
-    uncorrected readings.
-    """
-    points, chosen, scatter = given.points, found.chosen, found.scatter
+    """The record of an explanation; ``gap_before`` is the gap of all uncorrected readings."""
+    found, given, named, done = outcome.found, outcome.given, outcome.named, repair.explanation
+    scatter, u = found.scatter, _stated_u(done, found)
     before = given.predict(given.start)
-    explained = given.predict(found.refined.state) if chosen.effects or found.coefficients else before
-    done = repair.explanation
-    after = given.predict(done.refined.state) if done.chosen.effects or done.coefficients else before
-    known = {i for one in named for i in (one.effect.id, *one.tied_with)}
-    u = _stated_u(done, found)
-    corrected = _corrected(tyre, done, u)
+    explained, after = (
+        given.predict(one.refined.state) if one.chosen.effects or one.coefficients else before
+        for one in (found, done)
+    )
     delivers = any(effect.kind == "tyre" and _in_file(effect) for effect in done.chosen.effects)
     again = bool(done.chosen.effects) and any(name in BY_NAME for name in done.coefficients)
+    corrected = _corrected(search.tyre, done, u)
     diagnosis = Diagnosis(
         headline="",
         reasons=(),
-        answer=answered(rest, named, alternatives),
-        rest=tuple(rest),
-        name=config.tyre.name,
-        points=points,
+        answer=answered(outcome.rest, named, outcome.alternatives),
+        rest=outcome.rest,
+        name=search.config.tyre.name,
+        points=given.points,
         noise=scatter,
         before=before,
         after=after,
@@ -98,27 +83,33 @@ def answer(
         gap_after=gap(given.measured - after, scatter),
         gap_named=gap(given.measured - explained, scatter),
         validation=repair.validation,
-        where=where(points, given.measured - before, scatter),
+        where=where(given.points, given.measured - before, scatter),
         effects=tuple(_with_repair(one, done, u) for one in named),
-        alternatives=alternatives,
+        alternatives=outcome.alternatives,
         contests=found.contests or ((found.further,) if found.further else ()),
-        unexplained_where=_remaining(found, given.measured - explained) if rest else (),
+        unexplained_where=_remaining(found, given.measured - explained) if outcome.rest else (),
         bump=found.bump if found.bump.found else None,
         smooth=found.smooth if found.smooth.found else None,
-        outliers=_outliers(points, explained, scatter),
+        outliers=_outliers(given.points, explained, scatter),
         coefficients=dict(done.coefficients),
-        limits=limits(found.problem, chosen, candidates, known),
+        limits=_limits(outcome, search.candidates),
         given=given.start,
         state=done.refined.state,
-        signs=axis_signs(config),
+        signs=axis_signs(search.config),
         delivers=delivers,
-        tyre=corrected if delivers else tyre,
+        tyre=corrected if delivers else search.tyre,
         with_terms=corrected if again and not delivers else None,
         notes=tuple(notes),
-        apart=apart(points, given.start, done.refined.state, scatter.channels) if delivers else (),
-        seen=seen,
+        apart=apart(given.points, given.start, done.refined.state, scatter.channels) if delivers else (),
+        seen=search.asked.seen,
     )
     return replace(diagnosis, headline=wording.headline(diagnosis), reasons=wording.reasons(diagnosis))
+
+
+def _limits(outcome: Outcome, candidates: Sequence[Effect]) -> tuple[Limit, ...]:
+    """The limits of the candidates that are neither named nor tied with a named one."""
+    known = {i for one in outcome.named for i in (one.effect.id, *one.tied_with)}
+    return limits(outcome.found.problem, outcome.found.chosen, candidates, known)
 
 
 def _in_file(effect: Effect) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,112 +13,83 @@ from mffit.diagnosis.answer import answer, named_effects, not_accepted
 from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.explain import explain, only_first
 from mffit.diagnosis.explanation import Explanation
-from mffit.diagnosis.inexact import Inexactness, with_zeros
 from mffit.diagnosis.inexact import declared as declared_inexactness
+from mffit.diagnosis.inexact import with_zeros
 from mffit.diagnosis.needs import possible, without
-from mffit.diagnosis.notes import DiagnosisNote, NoRepair, OneSweep, TakenOff, WithinPlay
+from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.notes import DiagnosisNote, NoRepair, NotVisible, OneSweep, TakenOff, WithinPlay
 from mffit.diagnosis.priors import declared_priors, zeros_of_setups
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.repair import checked, repair
+from mffit.diagnosis.repair import Outcome, Repair, checked, repair
 from mffit.diagnosis.rest import hardly_this_tyre, remaining
 from mffit.diagnosis.result import Diagnosis
+from mffit.diagnosis.search import NOTHING_KNOWN, Asked, Search
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
 from mffit.diagnosis.strangers import offsets_or_memory, refuse_strangers, without_noise
 from mffit.diagnosis.validation import Validation, raw_gap
-from mffit.effects import CATALOG, Effect
+from mffit.effects import Effect
 from mffit.fit.plan import channels_of
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
 from mffit.rig_errors import T_REF
-from mffit.suspicion.misread import misread
+from mffit.suspicion.misread import Misread, misread
 from tir import Tyre
 
 
 def diagnose(
-    points: Points,
-    tyre: Tyre,
-    config: Config,
-    *,
-    rig: Mapping[str, float] | None = None,
-    effects: Sequence[Effect] = CATALOG,
-    coefficients: Inexactness | None = None,
-    seen: bool = False,
-    repair_all: bool = False,
-    as_read: Points | None = None,
-    taken_off: Sequence[str] = (),
-    culprits: bool = True,
-    progress: Progress = silent,
+    points: Points, tyre: Tyre, config: Config, asked: Asked = NOTHING_KNOWN, progress: Progress = silent
 ) -> Diagnosis:
     """The diagnosis of a model: where it disagrees with points (n,), ISO-W, angles as read, and the effects that explain this.
 
-    Of ``config``, the declarations of model, rig and tyre name are used. ``rig`` are known rig errors, of the rig or of a
-    set-up, by default the declared play alone; ``coefficients`` is the prior of the model's coefficients, by default from
-    ``model.u_coefficients``; ``seen``: the model was fitted to these points; ``repair_all``: see :mod:`mffit.diagnosis.repair`.
-    ``as_read`` are the points (n,) before known errors were subtracted, about which ``taken_off`` has sentences. ``culprits``:
-    search for a wrongly recorded sweep, which needs a model of this tyre.
+    Of ``config``, the declarations of model, rig and tyre name are used. ``progress`` is called with a sentence before each
+    step.
 
     Raises InputError if points and model cannot belong together, or there are too few points.
     """
     progress("comparing simulation and measurement")
-    start = _simulation(points, tyre, config, rig)
-    channels = channels_of(points)
+    start, channels = _simulation(points, tyre, config, asked.rig), channels_of(points)
     refuse_strangers(points, tyre, start, channels)
-    given_points, given_start, every = points, start, points if as_read is None else as_read
-    wrong = misread(points, start, axis_signs(config), channels) if culprits else None
+    wrong = misread(points, start, axis_signs(config), channels) if asked.culprits else None
     kept = np.ones(len(points), dtype=bool)
     if wrong is not None:
         kept = np.array([name != wrong.sweep for name in points.sweep_names])[points.sweep]
-    points = points.select(kept)
-    points, origin = with_uncertainties(by_condition(points), start, channels)
-    inexact = coefficients or declared_inexactness(tyre, config.model.u_coefficients)
-    candidates, notes = _candidates(effects, points, start, known=inexact.names if seen else ())
+    examined, origin = with_uncertainties(by_condition(points.select(kept)), start, channels)
     progress("trying every effect")
-    declared = declared_priors(config, points, start, channels)
-    zeros = [name for name in zeros_of_setups(points, channels) if name in declared]
-    inexact = with_zeros(inexact, declared, zeros) if zeros else inexact
-    noise = stated_noise(points, origin, channels)
-    found = explain(points, start, noise, candidates, inexact, declared, seen=seen)
+    search = _search(examined, stated_noise(examined, origin, channels), start, tyre, config, asked)
+    found = explain(search)
     beyond = hardly_this_tyre(found)
-    if wrong is not None and beyond:
-        return diagnose(
-            given_points,
-            tyre,
-            config,
-            rig=rig,
-            effects=effects,
-            coefficients=coefficients,
-            seen=seen,
-            repair_all=repair_all,
-            as_read=as_read,
-            taken_off=taken_off,
-            culprits=False,
-            progress=progress,
-        )
+    if wrong is not None and beyond:  # no sweep is wrong for a model of another tyre
+        return diagnose(points, tyre, config, replace(asked, culprits=False), progress)
     if beyond:
         found = found.withdrawn()
     progress("checking on left-out sweeps")
-    given = DiagnosisProblem(points, start, found.independent)
-    found, validation, refused = _confirmed(found, given, inexact, seen=seen)
+    given = DiagnosisProblem(examined, start, found.independent)
+    found, validation, refused = _confirmed(found, given, search)
     found = found if found.further is not None else found.contested()
-    named = named_effects(found, given)
-    rivals = not_accepted(found)
-    done = repair(found, named, given, inexact, validation, rivals, seen=seen, every=repair_all)
     rest = (*beyond, *remaining(found))
-    memories = offsets_or_memory(found.scatter, candidates, found.chosen.ids)
+    outcome = Outcome(found, given, named_effects(found, given), not_accepted(found), rest)
+    done = repair(outcome, validation, search)
+    notes = _notes(search, found, wrong, done, refused)
+    before = raw_gap(points if asked.as_read is None else asked.as_read, start, kept, found.scatter)
+    return answer(search, outcome, done, notes, before)
+
+
+def _notes(
+    search: Search, found: Explanation, wrong: Misread | None, done: Repair, refused: NoRepair | None
+) -> list[DiagnosisNote]:
+    """Everything that the reader of a diagnosis has to know beside its effects."""
     remarks = (
-        *(TakenOff(sentence) for sentence in taken_off),
+        *(TakenOff(sentence) for sentence in search.asked.taken_off),
         wrong,
         without_noise(found.scatter),
-        *memories,
+        *offsets_or_memory(found.scatter, search.candidates, found.chosen.ids),
         _within_play(done.explanation),
-        *notes,
+        *search.hidden,
         refused,
         done.refused,
     )
-    notes = [note for note in remarks if note is not None]
-    before = raw_gap(every, given_start, kept, found.scatter)
-    return answer(found, named, rest, done, given, tyre, config, notes, candidates, rivals, before, seen)
+    return [note for note in remarks if note is not None]
 
 
 def _within_play(found: Explanation) -> WithinPlay | None:
@@ -140,9 +112,31 @@ def _simulation(points: Points, tyre: Tyre, config: Config, rig: Mapping[str, fl
     ).with_numbers(rig or {})
 
 
+def _search(
+    points: Points, stated: Noise, start: Simulation, tyre: Tyre, config: Config, asked: Asked
+) -> Search:
+    """The search for effects in points (n,) with the ``stated`` noise, around the given model ``start``."""
+    inexact = asked.coefficients or declared_inexactness(tyre, config.model.u_coefficients)
+    candidates, hidden = _candidates(asked.effects, points, start, known=inexact.names if asked.seen else ())
+    declared = declared_priors(config, points, start, stated.channels)
+    zeros = [name for name in zeros_of_setups(points, stated.channels) if name in declared]
+    return Search(
+        tyre=tyre,
+        config=config,
+        asked=asked,
+        points=points,
+        start=start,
+        stated=stated,
+        candidates=tuple(candidates),
+        hidden=tuple(hidden),
+        inexact=with_zeros(inexact, declared, zeros) if zeros else inexact,
+        declared=declared,
+    )
+
+
 def _candidates(
     effects: Sequence[Effect], points: Points, start: Simulation, known: Sequence[str]
-) -> tuple[list[Effect], list[DiagnosisNote]]:
+) -> tuple[list[Effect], list[NotVisible | OneSweep]]:
     """Candidate effects, and notes on effects that are not visible; effects of the ``known``, refitted coefficients are left out.
 
     If coefficients are refitted, the reference temperature is fixed at the mean of the points.
@@ -156,10 +150,10 @@ def _candidates(
 
 
 def _confirmed(
-    found: Explanation, given: DiagnosisProblem, inexact: Inexactness, *, seen: bool
+    found: Explanation, given: DiagnosisProblem, search: Search
 ) -> tuple[Explanation, Validation, NoRepair | None]:
     """The explanation if left-out sweeps confirm it, else its first effect alone, else none; its validation; the refusal."""
-    done, validation, refused = checked(found, given, inexact, seen=seen)
+    done, validation, refused = checked(found, given, search)
     if refused is not None and len(found.chosen.effects) > 1:
-        done, validation, _ = checked(only_first(found, inexact), given, inexact, seen=seen)
+        done, validation, _ = checked(only_first(found, search.inexact), given, search)
     return done, validation, refused

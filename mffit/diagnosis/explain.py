@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,174 +17,97 @@ from mffit.diagnosis.learning import beyond_memory, learned_noise, settled
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.prediction import LeftOutPrediction, chosen_by_prediction, judged
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
+from mffit.diagnosis.search import Search
 from mffit.diagnosis.selection import select
-from mffit.diagnosis.smooth import StructureBeside, smooth_basis
 from mffit.effects import Effect
-from mffit.linearised.constants import DIVISIONS_OF_A_SWEEP
-from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.scatter import rms
 
 
-def explain(
-    points: Points,
-    start: Simulation,
-    stated: Noise,
-    candidates: Sequence[Effect],
-    inexact: Inexactness,
-    declared: Mapping[str, tuple[float, float]],
-    *,
-    seen: bool = False,
-) -> Explanation:
+def explain(search: Search) -> Explanation:
     """The explanation of the readings.
 
-    ``declared`` has the value and standard uncertainty of each declared rig error. ``seen``: the model was fitted to these
-    points, so model error remains as smooth structure, which is no evidence against an effect.
+    If the model was fitted to these points, model error remains as smooth structure, which is no evidence against an effect.
     """
-    search = Search(points, start, stated, tuple(candidates), inexact, declared)
+    seen = search.asked.seen
     found = _of_fitted_model(search) if seen else _of_given_model(search)
     if found.chosen.effects and (found.bump.found or found.smooth.found):
-        found = replace(found, imitated=imitations(found.problem, candidates))
+        found = replace(found, imitated=imitations(found.problem, search.candidates))
     if seen and found.smooth.found:
-        found = _predicting(found, inexact)
+        found = _predicting(found, search.inexact)
     return found.contested()
 
 
-@dataclass(frozen=True, eq=False)
-class Search:
-    """Everything that stays the same while noise, effects and coefficients are estimated."""
+def _all_at_once(search: Search) -> tuple[Simulation, Noise]:
+    """The simulation with all effects and coefficients fitted together, each held by its prior, and the noise around it.
 
-    points: Points
-    start: Simulation  #: the given model
-    stated: Noise
-    candidates: tuple[Effect, ...]
-    inexact: Inexactness
-    declared: Mapping[str, tuple[float, float]]
-
-    @property
-    def channels(self) -> tuple[str, ...]:
-        return self.stated.channels
-
-    @cached_property
-    def misfit(self) -> np.ndarray:
-        """Measured minus simulated (c n,) of the given model."""
-        measured = np.concatenate([self.points.channel(name) for name in self.channels])
-        return measured - self.start.predict(self.points, self.channels)
-
-    @cached_property
-    def coarse(self) -> np.ndarray:
-        """Smooth structure (c n, k) that noise may not be taken for."""
-        return smooth_basis(self.points, self.start.readings(self.points, self.channels))
-
-    @cached_property
-    def structure(self) -> np.ndarray:
-        """Smooth structure (c n, k) that competes with the effects."""
-        simulated = self.start.readings(self.points, self.channels)
-        return smooth_basis(self.points, simulated, DIVISIONS_OF_A_SWEEP)
-
-    def noise_around(self, state: Simulation, before: Noise, *, without_offsets: bool = False) -> Noise:
-        """The noise that remains around a simulation; the search for it starts at the noise ``before``."""
-        return learned_noise(
-            self.stated.without(state.floats(self.points)),
-            before,
-            self.points,
-            state,
-            self.candidates,
-            self.inexact,
-            self.coarse,
-            without_offsets=without_offsets,
+    Whatever the library contains explains the readings there, so that nothing of it counts as noise.
+    """
+    points, start, declared = search.points, search.start, search.declared
+    alike = [e for e in search.candidates if not e.differs_by_run]  # the others are rivals of the noise
+    state, noise = start, search.stated
+    read: np.ndarray | None = None
+    for _ in range(constants.MOST_EXPLANATION_ROUNDS):
+        shared = search.shared(noise, state)
+        at: dict[str, float] = (
+            {} if read is None else {n: state.number(n, points) for e in alike for n in e.parameters}
         )
+        together = DiagnosisProblem(points, start, shared, declared).fit_together(alike, at)
+        if search.inexact:
+            plain = DiagnosisProblem(points, start, noise.alone(), declared)
+            together, _ = plain.refine(together, search.inexact)
+        before, state = read, together.state
+        read = state.predict(points, search.channels)
+        if before is not None:
+            moved = rms(((read - before) / noise.u)[noise.used])
+            if moved < constants.NOISE_MOVED:
+                break
+        noise = learned_noise(search, state, noise)
+    return state, noise
 
-    def problem(self, state: Simulation, noise: Noise, effects: Sequence[Effect]) -> DiagnosisProblem:
-        """The readings with coefficients linearised at a simulation and integrated out, in addition to smooth structure.
 
-        The coefficients that ``effects`` have changed in the simulation are those of the given model.
-        """
-        changed = {name for effect in effects for name in effect.parameters}
-        names = [name for name in self.inexact.names if name not in changed]
-        numbers = {name: state.number(name, self.points) for name in names}
-        at = self.start.with_numbers(numbers) if numbers and state is not self.start else self.start
-        moved = None if at is self.start else self.inexact.moved(self.points, state, at, self.channels)
-        shared = noise.sharing(self.inexact.columns(self.points, state, self.channels))
-        beside = StructureBeside.over(self.structure, shared)
-        return DiagnosisProblem(self.points, at, shared, self.declared, moved, beside)
-
-    def all_at_once(self) -> tuple[Simulation, Noise]:
-        """The simulation with all effects and coefficients fitted together, each held by its prior, and the noise around it.
-
-        Whatever the library contains explains the readings there, so that nothing of it counts as noise.
-        """
-        alike = [e for e in self.candidates if not e.differs_by_run]  # the others are rivals of the noise
-        state, noise = self.start, self.stated
-        read: np.ndarray | None = None
-        for _ in range(constants.MOST_EXPLANATION_ROUNDS):
-            shared = noise.sharing(self.inexact.columns(self.points, state, self.channels))
-            at: dict[str, float] = (
-                {} if read is None else {n: state.number(n, self.points) for e in alike for n in e.parameters}
-            )
-            together = DiagnosisProblem(self.points, self.start, shared, self.declared).fit_together(
-                alike, at
-            )
-            if self.inexact:
-                plain = DiagnosisProblem(self.points, self.start, noise.alone(), self.declared)
-                together, _ = plain.refine(together, self.inexact)
-            before, state = read, together.state
-            read = state.predict(self.points, self.channels)
-            if before is not None:
-                moved = rms(((read - before) / noise.u)[noise.used])
-                if moved < constants.NOISE_MOVED:
-                    break
-            noise = self.noise_around(state, noise)
-        return state, noise
-
-    def selected(self, state: Simulation, noise: Noise, known: Hypothesis | None = None) -> Explanation:
-        """The effects selected from nothing and from all effects at once, or from a ``known`` set; coefficients estimated."""
-        visible = beyond_memory(noise, self.candidates)
-        problem = self.problem(state, noise, self.candidates if known is None else known.effects)
-        places = [problem.null]
-        if known is None:
-            places.append(problem.fit_together(visible))
-        else:
-            places.append(refitted(problem, known, [e for e in visible if e.id in known.ids]))
-        return _selected(problem, visible, places).with_coefficients(self.inexact)
+def _selected_around(
+    search: Search, state: Simulation, noise: Noise, known: Hypothesis | None = None
+) -> Explanation:
+    """The effects selected from nothing and from all effects at once, or from a ``known`` set; coefficients estimated."""
+    visible = beyond_memory(noise, search.candidates)
+    problem = search.problem(state, noise, search.candidates if known is None else known.effects)
+    places = [problem.null]
+    if known is None:
+        places.append(problem.fit_together(visible))
+    else:
+        places.append(refitted(problem, known, [e for e in visible if e.id in known.ids]))
+    return _selected(problem, visible, places).with_coefficients(search.inexact)
 
 
 def _of_given_model(search: Search) -> Explanation:
     """The explanation of the gap of a model that was not fitted to these points."""
-    state, noise = search.all_at_once()
-    found = search.selected(state, noise)
+    state, noise = _all_at_once(search)
+    found = _selected_around(search, state, noise)
     if noise.offset and not noise.offset & found.chosen.ids:
         # Offsets of runs that were assumed in the noise but are not named are noise.
-        noise = search.noise_around(found.without_run_offsets, noise, without_offsets=True)
-        found = search.selected(found.refined.state, noise, found.chosen)
+        noise = learned_noise(search, found.without_run_offsets, noise, without_offsets=True)
+        found = _selected_around(search, found.refined.state, noise, found.chosen)
     if search.inexact:  # coefficients act otherwise where only the named effects act with them
-        found = search.selected(found.refined.state, noise, found.chosen)
+        found = _selected_around(search, found.refined.state, noise, found.chosen)
     return found
 
 
 def _of_fitted_model(search: Search) -> Explanation:
     """The explanation of the gap of a model that was fitted to these points."""
-    noise, found, without_offsets = search.noise_around(search.start, search.stated), None, False
+    noise, found, without_offsets = learned_noise(search, search.start, search.stated), None, False
     for _ in range(constants.MOST_EXPLANATION_ROUNDS):
-        last, found = (
-            found,
-            search.selected(
-                search.start if found is None else found.refined.state,
-                noise,
-                None if found is None else found.chosen,
-            ),
-        )
+        last, state = found, search.start if found is None else found.refined.state
+        found = _selected_around(search, state, noise, None if found is None else found.chosen)
         if rms(search.misfit / noise.u) > constants.MISFIT_AT_NOISE:
             found = replace(found, misfit=search.misfit)
-        if (
-            found.smooth.found
-        ):  # left-out sweeps decide; the noise hardly matters against the misfit of the given model
-            break
+        if found.smooth.found:
+            break  # left-out sweeps decide; the noise hardly matters against the misfit of the given model
         if last is not None and found.chosen.ids == last.chosen.ids:
             break
         lost = bool(noise.offset) and not noise.offset & found.chosen.ids
         without_offsets, before = without_offsets or lost, noise
-        noise = search.noise_around(found.without_run_offsets, noise, without_offsets=without_offsets)
+        noise = learned_noise(search, found.without_run_offsets, noise, without_offsets=without_offsets)
         if last is not None and settled(before, noise) and not lost:
             break
     assert found is not None

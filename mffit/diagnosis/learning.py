@@ -8,43 +8,36 @@ from dataclasses import replace
 import numpy as np
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.scatter import ExplainingColumns, learned
+from mffit.diagnosis.search import Search
 from mffit.effects import Effect
-from mffit.points import Points
 from mffit.rig import Simulation
 
 
 def learned_noise(
-    stated: Noise,
-    before: Noise,
-    points: Points,
-    state: Simulation,
-    candidates: Sequence[Effect],
-    inexact: Inexactness,
-    basis: np.ndarray,
-    *,
-    without_offsets: bool = False,
+    search: Search, state: Simulation, before: Noise, *, without_offsets: bool = False
 ) -> Noise:
-    """The noise with the scatter that remains if all candidates, coefficients and structure may explain the misfit.
+    """The noise with the scatter that remains around ``state`` if all candidates, coefficients and structure may explain more.
 
     The search starts at the noise ``before`` of the last round. ``without_offsets``: runs have no offsets.
     """
+    points = search.points
+    stated = search.stated.without(state.floats(points))
     problem = DiagnosisProblem(points, state, stated.alone())
     predicted = np.nan_to_num(problem.predict(state))
     residual = problem.measured - predicted
     nothing = np.zeros((len(predicted), 0))
     # The derivative by each effect, and its first finite step for numbers whose derivative vanishes at zero.
-    columns = {e: groups[:2] for e, groups in problem.columns(state, candidates).items()}
+    columns = {e: groups[:2] for e, groups in problem.columns(state, search.candidates).items()}
     runs = {e.id: g[0] for e, g in columns.items() if e.differs_by_run}
     others = [g for e, groups in columns.items() if not e.differs_by_run for g in groups]
     generous = constants.GENEROUS_EFFECT_SIZE
     named = np.column_stack(
-        [nothing, *(generous * g for g in others), inexact.columns(points, state, problem.channels)]
+        [nothing, *(generous * g for g in others), search.inexact.columns(points, state, problem.channels)]
     )
-    explained = ExplainingColumns(named=named, runs=runs, smooth=basis, withdrawn=without_offsets)
+    explained = ExplainingColumns(named=named, runs=runs, smooth=search.coarse, withdrawn=without_offsets)
     start = replace(stated, scatter=before.scatter)
     return learned(start, residual, explained, predicted).alone()
 

@@ -14,7 +14,7 @@ import tir
 from mffit import as_json
 from mffit import config as configuration
 from mffit.config import Config
-from mffit.diagnosis import Diagnosis, corrected_points, wording
+from mffit.diagnosis import Asked, Diagnosis, corrected_points, wording
 from mffit.diagnosis import diagnose as find_effects
 from mffit.diagnosis.notes import DiagnosisNote, DirectMethodRedone, ModelFittedFirst, ModelOfLastBuild
 from mffit.diagnosis.result import WITH_TERMS
@@ -92,10 +92,7 @@ def _explained(
         progress(other.sentence)
     same = fitted_to(chosen.tyre, config)
     known, seen = known_of_model(chosen.tyre, config, chosen.file, same=same, fresh=chosen.fresh)
-    found = find_effects(
-        reading.points,
-        chosen.tyre,
-        config,
+    asked = Asked(
         rig=rig_of_build(chosen.tyre) if same else None,
         effects=effects,
         coefficients=known,
@@ -104,8 +101,8 @@ def _explained(
         as_read=reading.as_read,
         taken_off=reading.taken_off,
         culprits=other is None,
-        progress=progress,
     )
+    found = find_effects(reading.points, chosen.tyre, config, asked, progress)
     return replace(found, notes=(*([] if other is None else [other]), *chosen.notes, *found.notes))
 
 

@@ -10,7 +10,7 @@ import pytest
 from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
 
 from mffit import config
-from mffit.diagnosis import diagnose
+from mffit.diagnosis import Asked, diagnose
 from mffit.diagnosis.bumps import _bells, bump_scan
 from mffit.diagnosis.inexact import declared
 from mffit.diagnosis.needs import MET, missing, possible
@@ -381,7 +381,7 @@ def three_effects(understated: float, strange: float = 0.0, alike: int = 1, stra
         for reading, size in ((points.Fy, strange), (points.Mz, strange_moment))
     )
     stated = points.replace(Fy=Fy, Mz=Mz, u_Fy=U_FY / understated, u_Mz=U_MZ / understated)
-    return diagnose(stated, TYRE, SETTINGS, effects=[BY_ID[name] for name in THREE])
+    return diagnose(stated, TYRE, SETTINGS, Asked(effects=[BY_ID[name] for name in THREE]))
 
 
 def answers(found):

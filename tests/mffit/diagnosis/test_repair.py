@@ -14,7 +14,7 @@ from small_programme import LOADS, SLIP, TYRE, U_FY, U_MZ
 from mffit import pipeline
 from mffit.cli import main
 from mffit.config import RigTable
-from mffit.diagnosis import diagnose
+from mffit.diagnosis import Asked, diagnose
 from mffit.diagnosis import repair as repairing
 from mffit.diagnosis.inexact import EXACT
 from mffit.diagnosis.notes import FileKept
@@ -63,7 +63,7 @@ def of_a_leaning_cell(**settings):
     points = with_noise(
         points, *Simulation.of(TYRE, NO_FAULTS.replace(crosstalk=0.005)).readings(points).values(), rng
     )
-    return diagnose(points, TYRE, CONFIG, effects=(CROSSTALK, CONICITY), **settings)
+    return diagnose(points, TYRE, CONFIG, Asked(effects=(CROSSTALK, CONICITY), **settings))
 
 
 def test_a_suspicion_is_listed_and_not_repaired(tmp_path):
@@ -113,7 +113,7 @@ def warming(given, **settings):
     warmth = 1.0 + PER_KELVIN * (points.T - points.T.min())
     Fy, Mz = Simulation.of(TYRE).readings(points).values()
     points = with_noise(points, warmth * Fy, warmth * Mz, rng)
-    return diagnose(points, given, CONFIG, effects=(GRIP, TEMPERATURE), repair_all=True, **settings)
+    return diagnose(points, given, CONFIG, Asked(effects=(GRIP, TEMPERATURE), repair_all=True, **settings))
 
 
 def test_an_effect_of_the_tyre_is_in_the_file_however_the_readings_warm_up():
@@ -164,6 +164,7 @@ def test_one_number_of_all_channels_decides_about_the_file(monkeypatch, gain_of_
     both, rig = explanation(GRIP, TEMPERATURE), explanation(TEMPERATURE)
     both.only = lambda effects: SimpleNamespace(with_coefficients=lambda _: explanation(*effects))
     monkeypatch.setattr(repairing, "validate", lambda *_, **__: check)
-    done = repairing.repair(both, named, None, EXACT, check, {}, seen=False, every=False)
+    outcome = repairing.Outcome(found=both, given=None, named=named, alternatives={}, rest=())
+    done = repairing.repair(outcome, check, SimpleNamespace(inexact=EXACT, asked=Asked()))
     assert done.explanation.chosen.effects == (both if delivered else rig).chosen.effects
     assert isinstance(done.refused, FileKept) is not delivered

@@ -11,7 +11,7 @@ import pytest
 from blind_rig import report
 from blind_scores import loaded
 
-from mffit.diagnosis import diagnose
+from mffit.diagnosis import Asked, diagnose
 from mffit.effects import CATALOG, Free
 
 EXAMPLE = Path(__file__).parents[3] / "docs" / "examples" / "road_friction.py"
@@ -27,7 +27,7 @@ def test_the_example_of_the_docs_is_named_when_it_is_the_cause(right_model, tmp_
         case, name="road", Fy=Fy + noise.normal(0.0, 6.0, len(Fy)), Mz=Mz + noise.normal(0.0, 0.6, len(Mz))
     )
     config, points = loaded(rougher, tmp_path)
-    found = diagnose(points, case.given, config, effects=(*CATALOG, effect))
+    found = diagnose(points, case.given, config, Asked(effects=(*CATALOG, effect)))
     assert [f.effect.id for f in found.effects] == ["road-friction"]
     value, error = found.effects[0].parameters["LMUY"]
     assert value == pytest.approx(0.94, abs=5.0 * error)
@@ -49,7 +49,7 @@ def test_effects_that_free_the_same_number_are_one_answer(right_model, tmp_path)
     )
     config, points = loaded(both, tmp_path)
     conicity = next(effect for effect in CATALOG if effect.id == "conicity")
-    found = diagnose(points, case.given, config, effects=(conicity, road, wet))
+    found = diagnose(points, case.given, config, Asked(effects=(conicity, road, wet)))
     friction, other = sorted(found.effects, key=lambda one: one.effect.id == "conicity")
     assert other.effect.id == "conicity"
     assert {friction.effect.id, *friction.tied_with} == {"road-friction", "wet"}

@@ -10,7 +10,7 @@ from report_toys import TRUE, made_config, made_points, programme, read_page
 
 import tir
 from mffit.constants import TERMINAL_LINES, TERMINAL_WIDTH
-from mffit.diagnosis import diagnose
+from mffit.diagnosis import Asked, diagnose
 from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.rest import Answer
 from mffit.diagnosis.ties import SeparatingRun, Separation
@@ -189,7 +189,7 @@ def test_unexplained_structure_is_at_the_top_with_its_place(unknown, tmp_path):
 def test_without_moment_only_side_force_is_shown(tmp_path):
     points = made_points(programme(), moment=False)
     few = CATALOG[:3]
-    page = written(diagnose(points, tir.read(TRUE), made_config(), effects=few), tmp_path)
+    page = written(diagnose(points, tir.read(TRUE), made_config(), Asked(effects=few)), tmp_path)
     assert "Mz gap" not in page.text
 
 

@@ -11,7 +11,7 @@ from report_toys import TRUE, made_config, made_points, made_result, programme
 
 import tir
 from mffit.config.laboratory import InstrumentTable, LabTable
-from mffit.diagnosis import diagnose
+from mffit.diagnosis import Asked, diagnose
 from mffit.effects import CATALOG
 from mffit.made import made
 from mffit.points.left_out import LeftOut
@@ -117,7 +117,7 @@ def test_the_build_report_shows_hostile_names_as_text(settings, tmp_path):
 
 def test_the_diagnosis_shows_hostile_names_as_text(settings, tmp_path):
     points = hostile(made_points(programme()))
-    found = diagnose(points, tir.read(TRUE), settings, effects=CATALOG[:3])
+    found = diagnose(points, tir.read(TRUE), settings, Asked(effects=CATALOG[:3]))
     found = dataclasses.replace(
         found,
         outliers=(Outlier(HOSTILE, 3, HOSTILE, 0, "Fy", 40.0, 0.0, 9.0),),

@@ -1,0 +1,97 @@
+"""What a diagnosis is asked, and what its search for effects starts from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from mffit.config import Config
+from mffit.diagnosis.inexact import Inexactness
+from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.notes import NotVisible, OneSweep
+from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.smooth import StructureBeside, smooth_basis
+from mffit.effects import CATALOG, Effect
+from mffit.linearised.constants import DIVISIONS_OF_A_SWEEP
+from mffit.points import Points
+from mffit.rig import Simulation
+from tir import Tyre
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Asked:
+    """What a diagnosis is asked, and what is known beside points, model and project."""
+
+    rig: Mapping[str, float] | None = None
+    """Known rig errors, of the rig or of a set-up; None: the declared play alone."""
+    effects: Sequence[Effect] = CATALOG  #: to be tried
+    coefficients: Inexactness | None = None
+    """Prior of the model's coefficients; None: from ``model.u_coefficients``."""
+    seen: bool = False  #: whether the model was fitted to these points
+    repair_all: bool = False  #: whether every named effect is repaired, see :mod:`mffit.diagnosis.repair`
+    as_read: Points | None = None  #: the points (n,) before known errors were subtracted, if any were
+    taken_off: Sequence[str] = ()  #: sentences on what was subtracted
+    culprits: bool = True
+    """Whether to search for a wrongly recorded sweep, which needs a model of this tyre."""
+
+
+NOTHING_KNOWN = Asked()
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """Everything that stays the same while noise, effects and coefficients are estimated."""
+
+    tyre: Tyre  #: the given property file
+    config: Config
+    asked: Asked
+    points: Points  #: with an uncertainty for every reading, cut at their conditions
+    start: Simulation  #: the given model
+    stated: Noise
+    candidates: tuple[Effect, ...]
+    hidden: tuple[NotVisible | OneSweep, ...]  #: why the other effects are no candidates
+    inexact: Inexactness
+    declared: Mapping[str, tuple[float, float]]
+    """Value and standard uncertainty of each declared rig error."""
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        return self.stated.channels
+
+    @cached_property
+    def misfit(self) -> np.ndarray:
+        """Measured minus simulated (c n,) of the given model."""
+        measured = np.concatenate([self.points.channel(name) for name in self.channels])
+        return measured - self.start.predict(self.points, self.channels)
+
+    @cached_property
+    def coarse(self) -> np.ndarray:
+        """Smooth structure (c n, k) that noise may not be taken for."""
+        return smooth_basis(self.points, self.start.readings(self.points, self.channels))
+
+    @cached_property
+    def structure(self) -> np.ndarray:
+        """Smooth structure (c n, k) that competes with the effects."""
+        simulated = self.start.readings(self.points, self.channels)
+        return smooth_basis(self.points, simulated, DIVISIONS_OF_A_SWEEP)
+
+    def shared(self, noise: Noise, state: Simulation) -> Noise:
+        """The noise together with the changes by inexact coefficients, linearised at a simulation."""
+        return noise.sharing(self.inexact.columns(self.points, state, self.channels))
+
+    def problem(self, state: Simulation, noise: Noise, effects: Sequence[Effect]) -> DiagnosisProblem:
+        """The readings with coefficients linearised at a simulation and integrated out, in addition to smooth structure.
+
+        The coefficients that ``effects`` have changed in the simulation are those of the given model.
+        """
+        changed = {name for effect in effects for name in effect.parameters}
+        names = [name for name in self.inexact.names if name not in changed]
+        numbers = {name: state.number(name, self.points) for name in names}
+        at = self.start.with_numbers(numbers) if numbers and state is not self.start else self.start
+        moved = None if at is self.start else self.inexact.moved(self.points, state, at, self.channels)
+        shared = self.shared(noise, state)
+        beside = StructureBeside.over(self.structure, shared)
+        return DiagnosisProblem(self.points, at, shared, self.declared, moved, beside)
