@@ -27,6 +27,14 @@ CONDITIONS_PER_CALL = Count(
     1000, "-", "Conditions that take as long as what every call in numpy takes beside them.", "docs/speed.md"
 )
 
+# Model error
+SLIP_OF_FREE_ROLLING = Real(
+    0.05,
+    "-",
+    "Longitudinal slip over which a model error fades where nobody measured it, at zero sideslip: about that of the largest Fx, "
+    "where what sideslip did before is gone.",
+)
+
 # Text of a file
 NAMES_IN_A_SENTENCE = Count(6, "-", "Most keys that a message names; it counts the others.")
 LONGEST_WRITTEN_LINE = Count(118, "-", "Longest written line in characters; some readers stop at 120.")

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from tir import constants
 from tir.codegen.program import INPUTS
 from tir.equations.forces import Forces
 from tir.errors import TirError
@@ -65,12 +66,13 @@ class Correction(ReadOnlyArrays):
     fading: np.ndarray = field(compare=False)
     """(channels, d) lengths over which the model error fades outside of the grid, SI."""
     path: float = field(compare=False)  #: curvature of the path of the measurement [1/m]
+    lowest: float = field(compare=False)  #: load below which the model error falls with the load [N]
 
     def added(self, forces: Forces, inputs: Sequence[Any], *, limits: bool = False) -> Forces:
         """The forces of the formula with what it misses, at the ``inputs`` of the call, in the order of ``INPUTS``.
 
-        With ``limits`` the inputs are held to the file's ranges; then the model error does not fade outside of the grid. Raises
-        TirError if an input is not a real number.
+        With ``limits`` the inputs are held to the file's ranges; then the model error fades outside of the grid only towards a
+        wheel in the air and over a longitudinal slip that nobody measured. Raises TirError if an input is not a real number.
         """
         kinds = {x.dtype.kind for x in map(np.asarray, inputs)}
         if not kinds <= set("fiub"):
@@ -86,6 +88,7 @@ class Correction(ReadOnlyArrays):
             if not limits:
                 missed = missed * self._left(at)
             missed = missed.reshape(-1, *shape)
+        missed = missed * self._left_of_any(by_name)
         if self.path:
             missed = missed * np.exp(-0.5 * (by_name["phi_t"] / self.path - 1.0) ** 2)
         missed = np.where(by_name["Vx"] < 0.0, 0.0, missed)
@@ -93,6 +96,25 @@ class Correction(ReadOnlyArrays):
         for k, one in zip(self.channels, missed if missed.ndim > 1 else missed.tolist(), strict=True):
             found[k] = found[k] + one
         return Forces(*found)
+
+    def _left_of_any(self, by_name: Mapping[str, Any]) -> Any:
+        """Share (channels, ...) that is left at this load and longitudinal slip, whatever the length of fading.
+
+        Below the lowest tested load it is proportional to the load, as forces are. Over longitudinal slip without a length, it
+        fades with the combined slip: the larger the sideslip, the longer it lasts.
+        """
+        kappa, known = by_name["kappa"], self.nodes.get("kappa", np.zeros(1))
+        beyond = kappa - np.clip(kappa, known[0], known[-1])
+        lasts = constants.SLIP_OF_FREE_ROLLING**2 + np.tan(by_name["alpha"]) ** 2
+        fades = np.multiply.outer(self._of_free_rolling, 0.5 * beyond**2 / lasts)
+        return np.clip(by_name["Fz"] / self.lowest, 0.0, 1.0) * np.exp(-fades)
+
+    @cached_property
+    def _of_free_rolling(self) -> np.ndarray:
+        """By channel, 1 where the table has no length of fading over longitudinal slip."""
+        if "kappa" not in self.nodes:
+            return np.ones(len(self.channels))
+        return np.where(np.isinf(self.fading[:, [*self.nodes].index("kappa")]), 1.0, 0.0)
 
     def _left(self, at: np.ndarray) -> np.ndarray:
         """Share (channels, n) of the model error that is left outside of the grid."""
@@ -155,7 +177,7 @@ def read_correction(path: str | Path, values: Mapping[str, Any]) -> Correction:
     try:
         heading, *rows = csv.reader(line for line in lines if not line.startswith("#"))
         known = head[COEFFICIENTS]
-        found = _correction(text, head, heading, np.array(rows, dtype=float))
+        found = _correction(text, head, heading, np.array(rows, dtype=float), float(values["FNOMIN"]))
     except (ValueError, LookupError, StopIteration):
         sentence = "is not the whole table of a model error, as a build writes it; build the tyre again"
         raise TirError(sentence, path=path) from None
@@ -168,8 +190,10 @@ def read_correction(path: str | Path, values: Mapping[str, Any]) -> Correction:
     return found
 
 
-def _correction(text: str, head: Mapping[str, str], heading: list[str], rows: np.ndarray) -> Correction:
-    """The record of a table; raises ValueError or LookupError if it is not whole."""
+def _correction(
+    text: str, head: Mapping[str, str], heading: list[str], rows: np.ndarray, nominal: float
+) -> Correction:
+    """The record of a table, of ``nominal`` load if it has none; raises ValueError or LookupError if it is not whole."""
     axes = [name for name in AXES if name in heading]
     names = [name for name in MISSED if f"{FADING} {name}" in head]
     nodes = [np.unique(rows[:, heading.index(name)]) for name in axes]
@@ -183,11 +207,13 @@ def _correction(text: str, head: Mapping[str, str], heading: list[str], rows: np
     if not (whole and names and min(shape) > 1):
         raise ValueError("the grid is not whole")
     lengths = [dict(pair.split(" ") for pair in head[f"{FADING} {name}"].split(", ")) for name in names]
+    by_input = {AXES[name][0]: AXES[name][1] * known for name, known in zip(axes, nodes, strict=True)}
     return Correction(
         content=hashlib.sha256(text.encode()).hexdigest(),
-        nodes={AXES[name][0]: AXES[name][1] * known for name, known in zip(axes, nodes, strict=True)},
+        nodes=by_input,
         missed=rows[:, [heading.index(MISSED[name]) for name in names]].reshape(*shape, len(names)),
         channels=tuple(Forces._fields.index(name) for name in names),
         fading=np.array([[AXES[name][1] * float(own[name]) for name in axes] for own in lengths]),
         path=float(head[PATH]),
+        lowest=float(by_input.get("Fz", [nominal])[0]),
     )

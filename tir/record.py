@@ -147,10 +147,11 @@ class TyreRecord:
     def with_correction(self, path: str | Path) -> Self:
         """A copy whose calls add the model error, from the table that a build wrote beside the file.
 
-        The table is linear in each input between its nodes. Beyond them the model error fades to zero. On another path than that
-        of the measurement it is known in part, as in ``mffit predict``; with ``limits=True`` it does not fade. Nothing is added
-        when rolling backwards. A changed value keeps the table. Property files, exports, ``state`` and ``tir.transient`` do not
-        have it; the first two and the last warn of it.
+        The table is linear in each input between its nodes. Beyond them the model error fades to zero: below the lowest load
+        with the load, over a longitudinal slip that nobody measured with the combined slip. On another path than that of the
+        measurement it is known in part, as in ``mffit predict``; with ``limits=True`` it fades with load and longitudinal slip
+        alone. Nothing is added to a wheel in the air or rolling backwards. A changed value keeps the table. Property files,
+        exports, ``state`` and ``tir.transient`` do not have it; the first two and the last warn of it.
 
         Parameters
         ----------

@@ -19,6 +19,7 @@ from mffit.prediction.predictor import Predictor
 from mffit.quantities import column
 from mffit.scatter import rms
 from tir import Tyre
+from tir.constants import SLIP_OF_FREE_ROLLING
 from tir.correction import AXES, COEFFICIENTS, FADING, FILE, MISSED, PATH, digest, interpolated
 
 
@@ -73,6 +74,7 @@ def text_of(found: CorrectionTable, file: str) -> str:
         f"{FILE}: {file}",
         f"{COEFFICIENTS}: {found.coefficients}",
         f"{PATH}: {found.path:.6g}",
+        f"fading with kappa: {float(SLIP_OF_FREE_ROLLING):g}",
     ]
     for name, lengths in found.fading.items():
         head.append(f"{FADING} {name}: " + ", ".join(f"{key} {value:.4g}" for key, value in lengths.items()))

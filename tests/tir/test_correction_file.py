@@ -24,18 +24,20 @@ def force(alpha_deg: float, Fz: float, p_kPa: float) -> float:
     return (3.0 + 2.0 * alpha_deg) * (Fz / 1000.0) * (1.0 - 0.002 * (p_kPa - 200.0))
 
 
-def table(path: Path, *, tyre: tir.Tyre = TYRE, curvature: float = 0.0) -> Path:
+def table(path: Path, *, tyre: tir.Tyre = TYRE, curvature: float = 0.0, slips: str = "") -> Path:
+    """With ``slips`` it has a column ``kappa``, over which nothing changes."""
     rows = [
-        f"{a},{f},{p},{force(a, f, p)},1,{0.01 * force(a, f, p)},1"
+        f"{a},{f},{p},{force(a, f, p)},1,{0.01 * force(a, f, p)},1" + slip
+        for slip in ([f",{k}" for k in slips.split()] or [""])
         for p, f, a in itertools.product(PRESSURE, LOAD, ALPHA)  # in another order than a build writes
     ]
     head = [
         "# file: front.tir",
         f"# coefficients: {digest(tyre.values)}",
         f"# phi_t_per_m: {curvature}",
-        "# fading of Fy: alpha_deg 3, Fz_N 500, p_kPa inf",
-        "# fading of Mz: alpha_deg 6, Fz_N 500, p_kPa inf",
-        "alpha_deg,Fz_N,p_kPa,Fy_missed_N,u_Fy_missed_N,Mz_missed_Nm,u_Mz_missed_Nm",
+        "# fading of Fy: alpha_deg 3, Fz_N 500, p_kPa inf" + (slips and ", kappa inf"),
+        "# fading of Mz: alpha_deg 6, Fz_N 500, p_kPa inf" + (slips and ", kappa 0.2"),
+        "alpha_deg,Fz_N,p_kPa,Fy_missed_N,u_Fy_missed_N,Mz_missed_Nm,u_Mz_missed_Nm" + (slips and ",kappa"),
     ]
     path.write_text("\n".join([*head, *rows, ""]))
     return path
@@ -78,6 +80,55 @@ def test_the_miss_fades_outside_of_the_grid(corrected: tir.Tyre):
     assert added("Mz", 3000.0, 14.0) == pytest.approx(np.exp(-0.5) * 0.01 * end)
     assert added("Fy", 4000.0, 11.0) == pytest.approx(np.exp(-0.5 - 2.0) * end)
     assert added("Fy", 4000.0, 11.0, limits=True) == pytest.approx(end)
+
+
+@pytest.mark.parametrize("limits", [False, True])
+@pytest.mark.parametrize("alpha", [0.0, 0.05, 0.14])
+def test_a_wheel_in_the_air_has_none_and_a_hardly_loaded_one_little(
+    corrected: tir.Tyre, alpha: float, limits: bool
+):
+    """Over load it grows no more as the load falls below the tested ones, as forces do not."""
+    loads = np.array([-300.0, 0.0, 10.0, 200.0, 500.0, 999.0])
+    plain, found = (t(loads, alpha=alpha, limits=limits) for t in (TYRE, corrected))
+    for name in ("Fy", "Mz"):
+        added = getattr(found, name) - getattr(plain, name)
+        assert np.all(added[:2] == 0.0)
+        full = [getattr(t(1000.0, alpha=alpha, limits=limits), name) for t in (TYRE, corrected)]
+        tested = full[1] - full[0]
+        assert np.all(np.abs(added[2:] / loads[2:]) <= np.abs(tested) / 1000.0 * (1.0 + 1e-9))
+        assert added[-1] == pytest.approx(tested, rel=0.01)
+    assert corrected(0.0, alpha=alpha, limits=limits) == TYRE(0.0, alpha=alpha, limits=limits)
+
+
+@pytest.mark.parametrize("limits", [False, True])
+@pytest.mark.parametrize(("slips", "end"), [("", 0.0), ("-0.1 0.1", 0.1)], ids=["free rolling", "some slips"])
+def test_over_untested_longitudinal_slip_it_goes_with_the_combined_slip(
+    tmp_path: Path, slips: str, end: float, limits: bool
+):
+    """The share of slip that is sideslip bounds it: a locked wheel that hardly slips sideways has none."""
+    tyre = TYRE.with_correction(table(tmp_path / "t.csv", slips=slips))
+
+    def added(kappa: float, alpha: float) -> float:
+        return (
+            tyre(2000.0, alpha=alpha, kappa=kappa, limits=limits).Fy
+            - TYRE(2000.0, alpha=alpha, kappa=kappa, limits=limits).Fy
+        )
+
+    for alpha in (0.02, 0.1):
+        whole = force(np.degrees(alpha), 2000.0, 200.0)
+        assert added(end, alpha) == pytest.approx(whole)
+        assert added(end + 1e-3, alpha) == pytest.approx(whole, rel=1e-3)  # no step
+        for side in (-1.0, 1.0):
+            assert abs(added(side * (end + 0.4), alpha)) < 0.01 * abs(whole)
+    assert added(end + 0.05, 0.1) / force(np.degrees(0.1), 2000.0, 200.0) > 0.85
+    assert abs(added(end + 0.05, 0.0) / force(0.0, 2000.0, 200.0)) < 0.7
+
+
+def test_a_length_over_longitudinal_slip_is_that_of_the_table(tmp_path: Path):
+    """The moment's model error changes over longitudinal slip, so that the build knows how far it reaches."""
+    tyre = TYRE.with_correction(table(tmp_path / "t.csv", slips="-0.1 0.1"))
+    added = tyre(2000.0, alpha=0.02, kappa=0.3).Mz - TYRE(2000.0, alpha=0.02, kappa=0.3).Mz
+    assert added == pytest.approx(np.exp(-0.5) * 0.01 * force(np.degrees(0.02), 2000.0, 200.0))
 
 
 def test_nothing_is_added_backwards_and_less_on_another_path(tmp_path: Path, corrected: tir.Tyre):
