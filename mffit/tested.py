@@ -1,10 +1,14 @@
-"""The limit to which a range was tested, as a comment in a property file: writing and reading."""
+"""What was tested, as comments of a property file say it: writing and reading."""
 
 from __future__ import annotations
 
 import re
 
 from tir import Tyre
+
+NOT_MEASURED = ("default", "estimate")
+"""First words of the comments of values that were not measured."""
+NO_FX = "its Fx is estimated, not measured"
 
 
 def words_on_tested(end: float, unit: str) -> str:
@@ -22,3 +26,8 @@ def tested_limit(tyre: Tyre, key: str) -> float:
     """The limit of a range in SI: the tested one if the file states it, else that of the file."""
     found = end_tested(tyre.status.get(key, ""))
     return float(tyre[key]) if found is None else found
+
+
+def lacks_fx(tyre: Tyre) -> bool:
+    """Whether nobody measured the longitudinal force: its stiffness is an estimate by the comments of the file."""
+    return tyre.status.get("PKX1", "").startswith(NOT_MEASURED)

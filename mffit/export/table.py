@@ -17,6 +17,7 @@ from mffit.export.grid import Function, Ranges, grid_of
 from mffit.output import output_folder
 from mffit.progress import Progress, silent
 from mffit.quantities import column
+from mffit.tested import NO_FX, lacks_fx
 from tir.envelope import RANGES, box
 from tir.mode import words
 
@@ -82,6 +83,8 @@ def write_table(
         raise InputError(f"{wrong[0]} is not a number everywhere in the ranges; see mffit check", file=path)
     at = f"straight path, {tyre['LONGVL']:g} m/s, {tyre['INFLPRES'] / 1e3:g} kPa"
     about = f"{path.name}, {words(on)}, {at}; ISO-W axes, degrees, N, Nm"
+    if lacks_fx(tyre):
+        about += f"; {NO_FX}"
     stem = path.stem + mode_suffix(tyre, on)
     with output_folder(out, by="export", protected=[path]) as folder:
         names = FORMS[form](folder, stem, about, tables)

@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.fit import constants
-from mffit.fit.priors import CONVERTED, NOT_MEASURED
+from mffit.fit.priors import CONVERTED
+from mffit.tested import NOT_MEASURED
 from tir import Tyre
 from tir.equations.forces import Forces
 from tir.mode import BLOCK, asks_for_turn_slip

@@ -74,6 +74,13 @@ ROLLING_SPREADS = Series(
     "0.0004 and more, QSY7 of 0.85 to 1 and QSY8 of -0.4 to 0.",
 )
 
+# Estimates of what nobody measured
+SLIP_OVER_CORNERING_STIFFNESS = Real(
+    1.3,
+    "-",
+    "Longitudinal slip stiffness over cornering stiffness, at nominal load; published tyres have 0.8 to 1.8.",
+)
+
 # Physical limits
 LIMIT_MARGIN = Real(0.02, "-", "Distance kept from a physical limit, in units of its violation.")
 LEAST_FRICTION = Real(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from mffit.config import Config
 from mffit.config.by_hand import KEYS_OF_TYRE
 from mffit.config.models import given_values
+from mffit.fit import constants
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.priors import CONVERTED, Prior
 from mffit.fit.ranges import covered_ranges
@@ -21,6 +23,7 @@ from mffit.measured import Measured
 from mffit.points import Points
 from mffit.rig import reference_speed
 from tir import Tyre
+from tir.equations import normalise, stiffness
 from tir.parameters import BY_NAME, TABLE
 
 DECIDED = ("TYRESIDE", "USE_MODE", "FITTYP")
@@ -158,7 +161,8 @@ def estimates(values: Mapping[str, Any]) -> dict[str, float]:
     """Vertical, longitudinal, combined-slip, rolling and structural coefficients, scaled from known values.
 
     The static deflection at nominal load is 5 % of the unloaded radius; the longitudinal peak equals the lateral one; the
-    longitudinal slip stiffness is 1.3 times the cornering stiffness; the arm of the load is half the width per radian of camber.
+    longitudinal slip stiffness follows from the cornering stiffness at nominal load; the arm of the load is half the width per
+    radian of camber.
     """
     v = {name: float(value) for name, value in values.items() if isinstance(value, (int, float))}
     R0 = v["UNLOADED_RADIUS"]
@@ -170,7 +174,15 @@ def estimates(values: Mapping[str, Any]) -> dict[str, float]:
         "LATERAL_STIFFNESS": 0.7 * vertical,
         "PDX1": v["PDY1"],
         "PDX2": v["PDY2"],
-        "PKX1": 1.3 * abs(v["PKY1"]),
+        "PKX1": _slip_stiffness(v),
         "QSX2": 0.5 * v["WIDTH"] / R0,
         **ESTIMATED_SHAPES,
     }
+
+
+def _slip_stiffness(v: Mapping[str, float]) -> float:
+    """PKX1 with the usual ratio of the stiffnesses at nominal load and pressure; PKY1 alone is the largest over all loads."""
+    p = SimpleNamespace(**{**v, "PKX1": 1.0})
+    q = normalise.inputs(p, normalise.OperatingCondition(p.FNOMIN, pressure=p.NOMPRES))
+    K_ya, of_one = stiffness.cornering_stiffness(p, q, 0.0), stiffness.longitudinal_slip_stiffness(p, q)
+    return float(constants.SLIP_OVER_CORNERING_STIFFNESS * abs(K_ya) / of_one)

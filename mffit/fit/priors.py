@@ -15,8 +15,6 @@ from tir.parameters import BY_NAME
 
 CONVERTED = "converted"
 """Origin of a base file's value that comes from a conversion, and the first word of its comment in that file."""
-NOT_MEASURED = ("default", "estimate")
-"""First words of the comments of values that were not measured."""
 FROM_BASE = ("base", CONVERTED)
 """Origins of values that the base file states."""
 

@@ -9,6 +9,7 @@ from mffit.measured.wording import SOURCES
 from mffit.quantities import CHANNELS, CHARACTERISTICS, DIRECT, KEYS, QuantityName
 from mffit.results import BuildResult
 from mffit.rounding import AtLeast, number, stated, times
+from mffit.tested import NO_FX, lacks_fx
 from tir import Quantity
 
 JUDGED = {"distrusted": "NOT TO BE TRUSTED", "doubted": "in doubt", "sound": "sound"}
@@ -104,6 +105,8 @@ def purposes(result: BuildResult) -> dict[str, str]:
         if use == "normal" and "turn-slip" in result.files and files is not None:
             off = [f"{m.ridden:.3g} {CHANNELS[name].unit}" for name, m in files.by_use[use].straight.items()]
             text += f"; {' and '.join(off)} off the model"
+        if use in result.tyres and lacks_fx(result.tyres[use]):
+            text += f"; {NO_FX}"
         found.setdefault(name, text.format(mode=mode, T=warm.T_ref if warm else 0.0))
     if result.correction is not None:
         found[result.correction_name] = (

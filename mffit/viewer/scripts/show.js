@@ -41,11 +41,12 @@ function curve(panel, tyre, fixed) {
   return Array.from({length: STEPS + 1}, (_, i) =>
     point(panel, tyre, {...fixed, [name]: (min + (max - min) * i / STEPS) * si}));
 }
+const isEstimated = (panel, tyre) => [panel.x, panel.y].some(name => tyre.estimated.includes(name));
 function point(panel, tyre, condition) {
   const found = evaluate(tyre, condition), of = name => name in found ? found[name] : condition[name];
   return {
     x: shownIn(panel.x, of(panel.x)), y: panel.sign * shownIn(panel.y, of(panel.y)),
-    zone: zone(tyre, condition), condition,
+    zone: Math.max(zone(tyre, condition), isEstimated(panel, tyre) ? UNTESTED : INSIDE), condition,
   };
 }
 function curves(panel, tyre) {
@@ -186,6 +187,7 @@ function table() {
       .map(name => content.quantities[name].word).join(", ");
     const notes = [`turn slip ${isOn(tyre) ? "on" : "off"}`];
     if (isOn(tyre) && tyre.doubt) notes.push("its coefficients of turn slip are defaults or zero");
+    if (tyre.estimated.length) notes.push("Fx estimated, not measured");
     if (beyond(OUTSIDE)) notes.push(`outside the file's range: ${beyond(OUTSIDE)}`);
     if (beyond(UNTESTED)) notes.push(`beyond the tested range: ${beyond(UNTESTED)}`);
     tyre.about.textContent = notes.join("; ");
@@ -231,7 +233,7 @@ function start() {
   byId("loads").checked = false;
   for (const control of content.controls) set(control.name, control.start);
 }
-byId("key-tested").hidden = !tyres.some(tyre => Object.values(tyre.ranges).some(range => range.tested));
+byId("key-tested").hidden = !tyres.some(tyre => tyre.estimated.length || Object.values(tyre.ranges).some(range => range.tested));
 if (matchMedia("(max-width: 820px)").matches) byId("controls").open = false;
 addEventListener("resize", () => update());
 onThemeChange(all);

@@ -168,13 +168,16 @@ def test_a_mistake_is_one_sentence_and_no_file(tmp_path, capsys, options, senten
     assert not (tmp_path / "out").exists()
 
 
-def test_a_tyre_without_a_force_gets_no_table_of_it(tmp_path, capsys):
+def test_a_tyre_without_a_force_gets_no_table_of_it_and_an_estimated_one_is_named(tmp_path, capsys):
     values = {"FNOMIN": 1500.0, "UNLOADED_RADIUS": 0.3, "FZMAX": 3000.0, "PKX1": 0.0, "PDX1": 0.0}
-    tir.Tyre.from_values(values).write(tmp_path / "a.tir")
+    guessed = {"PKX1": "estimate, not measured"}
+    tir.Tyre.from_values(values).annotate(status=guessed).write(tmp_path / "a.tir")
     main(
         ["export", "table", str(tmp_path / "a.tir"), "--for", "csv", "--out", str(tmp_path / "out"), *OPTIONS]
     )
     said = capsys.readouterr()
     assert "Fx does not depend on Fz_N, gamma_deg, kappa: no table" in said.err
-    assert "Fy_N" in (tmp_path / "out/a-Fy.csv").read_text()
+    table = (tmp_path / "out/a-Fy.csv").read_text()
+    assert "Fy_N" in table
+    assert "its Fx is estimated, not measured" in table.splitlines()[0]
     assert not (tmp_path / "out/a-Fx.csv").exists()

@@ -26,6 +26,18 @@ def test_slip_stiffness_is_one_to_two_cornering_stiffnesses(tyre):
     assert 1.0 < state.K_xk / abs(state.K_ya) < 2.0
 
 
+@pytest.mark.parametrize(
+    ("PKY1", "PKY2", "PKY4"), [(-54.6, 1.41, 0.64), (-12.0, 0.4, 2.0), (-80.0, 6.0, 1.0)]
+)
+def test_slip_stiffness_is_in_the_published_range_whatever_the_shape_of_the_cornering_stiffness(
+    tyre, PKY1, PKY2, PKY4
+):
+    """Where the cornering stiffness peaks says nothing of it at the nominal load; nor does another inflation pressure."""
+    shaped = tyre.replace(PKY1=PKY1, PKY2=PKY2, PKY4=PKY4, PPY1=0.5, INFLPRES=1.3 * tyre["NOMPRES"])
+    found = shaped.replace(**estimates(shaped.values)).state(tyre["FNOMIN"], p=tyre["NOMPRES"])
+    assert 0.8 < found.K_xk / abs(found.K_ya) < 1.8
+
+
 def test_the_tyre_brakes_as_hard_as_it_corners(tyre):
     for load in (0.7, 1.0, 1.4):
         Fz = load * tyre["FNOMIN"]

@@ -115,6 +115,12 @@ def test_the_tested_range_of_a_build_is_read_back():
     assert ranges["gamma"]["tested"] is None
 
 
+def test_an_estimated_longitudinal_force_is_told_from_a_measured_one():
+    known = tir.read(FRONT).annotate(status={"PKX1": "fitted +- 0.3"})
+    guessed = known.annotate(status={"PKX1": "estimate, not measured"})
+    assert [described("x", tyre, [])["estimated"] for tyre in (known, guessed)] == [[], ["Fx", "K_xk"]]
+
+
 def test_sliders_reach_as_far_as_the_files_and_no_further_than_tyres():
     by_name = {row["name"]: row for row in settings([tir.read(FRONT)])}
     assert (by_name["Fz"]["min"], by_name["Fz"]["max"], by_name["Fz"]["start"]) == (200, 3500, 1400)

@@ -183,6 +183,20 @@ def test_curves_beyond_the_ranges_are_dotted(browser):
     move(browser, gamma=0)
 
 
+def test_what_follows_from_an_estimated_longitudinal_force_is_dashed(tmp_path):
+    """Over its whole range, where a measured side force beside it is not; the table says so."""
+    guessed = tir.read(FILES[0]).annotate(status={"PKX1": "estimate, not measured"})
+    mffit.show({"guessed": guessed}, tmp_path / "page.html")
+    with opened(tmp_path / "page.html") as browser:
+        zones = {
+            panel: browser.execute_script(f"return window.mffit.curve('{panel}', 0).map(p => p.zone)")
+            for panel in ("Fx-kappa", "Fy-alpha")
+        }
+        assert "Fx estimated" in browser.find_element("css selector", "#legend .about").text
+    assert min(zones["Fx-kappa"]) == 1
+    assert min(zones["Fy-alpha"]) == 0
+
+
 def test_hostile_names_do_no_harm(browser):
     assert browser.execute_script("return window.hacked") is None
     assert browser.find_element("css selector", ".name").text == f"front {HOSTILE}"
