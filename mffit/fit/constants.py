@@ -139,6 +139,13 @@ UNTESTED_ANGLE = Real(
 )
 WRITTEN_FZMIN_SHARE = Real(0.1, "-", "Intended smallest load of a file over the smallest tested one.")
 WRITTEN_PRESSURE_SHARE = Real(0.2, "-", "Intended relative distance of pressures beyond the tested ones.")
+OFF_THE_TESTED_SLOPE = Real(
+    0.05,
+    "-",
+    "Largest change of grip or stiffness over load beyond the tested loads and pressures that their slope over these does not "
+    "allow, over the value at the tested end.",
+    "docs/fit.md",
+)
 FASTEST_CHANGE = Real(
     3.0,
     "-",

@@ -30,6 +30,7 @@ from mffit.fit.rig.zeros import epsilon_gamma_of_model
 from mffit.fit.wheel.vertical import vertical_sentence
 from mffit.fit.wording import (
     explanations,
+    nominal_pressure_sentences,
     nuisance_sentences,
     remarks,
     warnings,
@@ -134,6 +135,7 @@ def fit(
         warnings=(
             *([moved] if contradicted else []),
             *warnings(fitted, full, doubts, outlying, files.untested),
+            *nominal_pressure_sentences(files),
             *turning_sentences(points, best, at_turns),
             *(confounding_sentence(row, modelled=found.at_temperature) for row in confounded),
         ),

@@ -80,8 +80,8 @@ def plausible_ranges(
     stop following the sideslip at 8 degrees, for example. The targets are a tenth of the smallest and one and a half of the
     largest load, 20 degrees of sideslip, and pressures a fifth beyond the tested ones. The camber range grows by half, up to 45
     degrees; beyond, the quadratic term of the curvature would cost more inside the range than it gains outside. Each end moves
-    towards its target as long as the limits of :mod:`mffit.fit.constraints` hold and no characteristic changes faster than in
-    public tyres.
+    towards its target as long as the limits of :mod:`mffit.fit.constraints` hold, no characteristic changes faster than in
+    public tyres, and grip and stiffness over load follow their slope over the tested loads and pressures.
     """
     model = SimpleNamespace(**values)
     ranges = dict(tested)
@@ -90,8 +90,10 @@ def plausible_ranges(
         for share in constants.RANGE_SHARES:
             stop = tested[name] + share * (end - tested[name])
             wider, alone = (_with_end(inside, name, stop) for inside in (ranges, tested))
-            if _worst_violation(model, wider) <= allowed and _as_in_public_tyres(
-                model, alone, name, tested[name], turn_slip
+            if (
+                _worst_violation(model, wider) <= allowed
+                and _as_tested(model, wider, name, tested)
+                and _as_in_public_tyres(model, alone, name, tested[name], turn_slip)
             ):
                 ranges = wider
                 break
@@ -163,6 +165,36 @@ def _worst_violation(model: Any, ranges: Mapping[str, float]) -> float:
     return max(float(violations(model, envelope(ranges)._replace(Fz=loads)).max()) for loads in halves)
 
 
+def _as_tested(model: Any, ranges: Mapping[str, float], name: str, tested: Mapping[str, float]) -> bool:
+    """Whether grip and stiffness over load follow their slope over the tested loads or pressures up to the range's end ``name``.
+
+    A polynomial follows the tested conditions and may turn away beside them. What changes less than by the slope is no cliff.
+    """
+    key = name[:-3]
+    if {"FZ": single_load, "PRES": single_pressure}.get(key, lambda _: True)(tested):
+        return True
+    begin, other = (tested[key + end] for end in (name[-3:], "MIN" if name.endswith("MAX") else "MAX"))
+    x = np.linspace(begin, ranges[name], int(constants.STEPS_OF_A_GRID))
+    for line in _along(model, ranges, name, np.array([other, *x])):
+        first, found = line[:, :1], line[:, 1:]
+        toward = (found[:, :1] - first) * (x - begin) / (begin - other)
+        room = constants.OFF_THE_TESTED_SLOPE * np.abs(found[:, :1])
+        change = found - found[:, :1]
+        if np.any((change > np.maximum(toward, 0.0) + room) | (change < np.minimum(toward, 0.0) - room)):
+            return False
+    return True
+
+
+def _along(model: Any, ranges: Mapping[str, float], name: str, x: np.ndarray) -> list[np.ndarray]:
+    """Grip and stiffness over load at values (n,) of the range ``name``: (k, n) over a grid of the other ranges."""
+    others = grid(envelope(ranges))
+    conditions = (
+        np.tile(x, others[0].size) if name.startswith(axis) else np.repeat(values, len(x))
+        for axis, values in zip(("FZ", "CAM", "PRES"), others, strict=True)
+    )
+    return [found.reshape(-1, len(x)) for found in characteristics(model, *conditions)]
+
+
 def _as_in_public_tyres(
     model: Any, ranges: Mapping[str, float], name: str, begin: float, turn_slip: bool
 ) -> bool:
@@ -175,23 +207,18 @@ def _as_in_public_tyres(
         return True
     relative, n = name.startswith(("FZ", "PRES")), int(constants.STEPS_OF_A_GRID)
     x = (np.geomspace if relative else np.linspace)(begin, ranges[name], n)
-    others = grid(envelope(ranges))
-    along = np.tile(x, others[0].size)
-    Fz, gamma, pressure = (
-        along if name.startswith(axis) else np.repeat(values, n)
-        for axis, values in zip(("FZ", "CAM", "PRES"), others, strict=True)
-    )
     if name == "ALPMAX":
+        Fz, gamma, pressure = (np.repeat(values, n) for values in grid(envelope(ranges)))
+        along = np.tile(x, Fz.size // n)
         left, right = (
             evaluate(model, Fz, alpha, gamma, pressure=pressure, turn_slip=turn_slip)[0].Fy
             for alpha in (-along, along)
         )
-        found = [left - right]  # of opposite sideslip, so that camber thrust cancels
+        found = [(left - right).reshape(-1, n)]  # of opposite sideslip, so that camber thrust cancels
     else:
-        found = characteristics(model, Fz, gamma, pressure)
+        found = _along(model, ranges, name, x)
     step = np.diff(np.log(x) if relative else x)
-    for quantity in found:
-        line = quantity.reshape(-1, n)
+    for line in found:
         with np.errstate(
             divide="ignore", invalid="ignore"
         ):  # a change of sign is NaN, which is not below the limit

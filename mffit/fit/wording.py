@@ -11,6 +11,7 @@ from scipy.special import ndtri
 
 from mffit.config import Config
 from mffit.constants import NAMED_IN_SENTENCE, PREDICTION_FALSE_ALARM
+from mffit.fit import constants
 from mffit.fit.agreement import Agreement
 from mffit.fit.bands import BandBesideSweeps, Bands
 from mffit.fit.by_hand import NO_HAND, Hand
@@ -218,6 +219,21 @@ def one_sided_sentence(held: Mapping[str, float]) -> str:
     )
 
 
+def nominal_pressure_sentences(files: Files) -> Iterator[str]:
+    """A sentence if the nominal pressure, at which the coefficients hold, lies outside the tested pressures."""
+    nominal = float(next(iter(files.by_use.values())).tyre["NOMPRES"])
+    low, high = (files.tested[name] for name in ("PRESMIN", "PRESMAX"))
+    share = constants.SAME_NOMINAL_CONDITION
+    if not (1.0 - share) * low <= nominal <= (1.0 + share) * high:
+        tested = f"{low / 1e3:.1f} to {high / 1e3:.1f} kPa were"
+        if single_pressure(files.tested):
+            tested = f"only {0.5 * (low + high) / 1e3:.1f} kPa was"
+        yield (
+            f"nominal_pressure, {nominal / 1e3:g} kPa, was not tested, {tested}: the coefficients of the file hold at it by the "
+            "formula alone; run sweeps there or give a tested pressure"
+        )
+
+
 def warnings(
     plain: Fitted,
     fitted: Fitted,
@@ -417,7 +433,7 @@ def remarks(
         bands_sentence(found, fitted.held, values, why_held(found.unseen, points, config.tyre.side)),
         *(beside_sentence(band) for band in (found.combined, found.other_side) if band is not None),
         zeros_of_rig_sentence(zeros, found) if zeros and not config.rig.on_disc else "",
-        one_sided_sentence(fitted.held_rig),
+        "" if points.one_sided else one_sided_sentence(fitted.held_rig),
     ]
     return [f"{text[0].upper()}{text[1:]}." for text in said if text]
 

@@ -8,7 +8,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mffit.fit.wording import explanations, file_sentences, ranges_sentence
+from mffit.fit.wording import (
+    explanations,
+    file_sentences,
+    nominal_pressure_sentences,
+    ranges_sentence,
+)
 from mffit.fit.written.files import Files, file_names
 from mffit.fit.written.misfit import FileFigures, Misfit
 
@@ -122,6 +127,26 @@ def test_loads_of_one_level_are_one(lowest, words):
 @pytest.mark.parametrize(("lowest", "words"), [(291e3, "291 kPa only"), (289e3, "289 to 300 kPa")])
 def test_pressures_of_one_level_are_one(lowest, words):
     assert words in ranges_sentence(Files({}, TESTED | {"PRESMIN": lowest}, WRITTEN, {}, {}))
+
+
+@pytest.mark.parametrize(
+    ("nominal", "lowest", "words"),
+    [
+        (250e3, 200e3, None),
+        (301e3, 200e3, None),  # as a gauge reads
+        (310e3, 200e3, "nominal_pressure, 310 kPa, was not tested, 200.0 to 300.0 kPa were"),
+        (180e3, 200e3, "nominal_pressure, 180 kPa, was not tested"),
+        (250e3, 299e3, "nominal_pressure, 250 kPa, was not tested, only 299.5 kPa was"),
+    ],
+)
+def test_a_nominal_pressure_beside_the_tested_ones_is_said(nominal, lowest, words):
+    tyre = file(124, -1200.0, straight=0.0)
+    made = Files(
+        {"normal": replace(tyre, tyre=tyre.tyre | {"NOMPRES": nominal})},
+        TESTED | {"PRESMIN": lowest}, WRITTEN, {}, {},
+    )  # fmt: skip
+    said = list(nominal_pressure_sentences(made))
+    assert not said if words is None else words in said[0]
 
 
 @pytest.mark.parametrize("measured", [True, False])
