@@ -23,6 +23,7 @@ from mffit.quantities import DIRECT, KEYS
 from mffit.rig_errors import T_REF, error_of, unit_of
 from mffit.suspicion import Trust
 from tir import Tyre
+from tir.errors import listed
 from tir.temperature import CURVED_BY, HIGHEST, LOWEST, REFERENCE, RIG, terms_of
 
 PROGRAM = "program"
@@ -35,6 +36,8 @@ METHOD = "method"
 """Key of the number of the method."""
 SOURCE = "source"
 """Key of the digest of the program's own files."""
+PATHS = "path curvature"
+"""Key of the path curvatures that were run, for which a property file has no range."""
 DIGITS = 16
 """Digits of a hash in a property file, whose lines are to be short; result.json has all 64."""
 TEMPERATURE = "temperature"
@@ -62,6 +65,7 @@ def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult,
             SOURCE: made.source[:DIGITS],
             "use": f"{use}, for simulations with turn slip {TURN_SLIP[use]}",
             "quantities": _quantities(measured),
+            PATHS: _paths(fitted),
             "configuration": _settings(config),
             **_by_hand(fitted),
             **inputs,
@@ -163,6 +167,13 @@ def _quantities(measured: Measured) -> str:
         KEYS[name]: DIRECT[name] for name in KEYS if measured.nominal and getattr(measured.nominal, name)
     }
     return "; ".join(f"{key}: {q.how}{f', as {q.enters}' if q.enters else ''}" for key, q in known.items())
+
+
+def _paths(fitted: FitResult) -> str:
+    """The path curvatures of the points."""
+    assert fitted.full is not None
+    run = np.unique(fitted.full.problem.points.phi_t) + 0.0
+    return f"tested at {listed([f'{phi_t:.6g}' for phi_t in run])} 1/m"
 
 
 def _of_inputs(hashes: Mapping[str, str]) -> dict[str, str]:

@@ -70,6 +70,11 @@ def _numbers(cells: pd.Series, name: str, raw: RawTable | None) -> np.ndarray:
     unit = UNITS[name]
     if name in REQUIRED:
         refuse_if(is_empty, "this cell is empty; complete it or remove the row")
+    if name == PATH:
+        refuse_if(
+            np.isinf(values),
+            '"{cell}" is a wheel that turns on the spot, which no sweep shows; write 1/R [1/m], 0 for a straight path',
+        )
     refuse_if(~np.isfinite(values) & ~is_empty, f'"{{cell}}" is not a number [{unit}]; correct it')
     stated = "" if raw is None else raw.unit(name)
     if stated:

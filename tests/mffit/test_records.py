@@ -84,6 +84,16 @@ def test_the_result_states_when_by_what_and_from_what_it_was_made(built, result)
     assert made["inputs"]["base.tir"].startswith(file.provenance["input base.tir"])
 
 
+def test_a_file_states_the_path_curvatures_that_were_run(finished, built):
+    """A file has no range for them; the radius is that of the project's disc, its centre to the left."""
+    radius = finished.config.rig.path_radius
+    for name in finished.files.values():
+        stated = tir.read(built / "out" / name).provenance["path curvature"]
+        found = re.fullmatch(r"tested at (\S+) 1/m", stated)
+        assert found
+        assert abs(float(found[1])) == pytest.approx(1.0 / radius, rel=1e-4)
+
+
 def test_every_reading_without_weight_is_in_one_list_with_reason(result):
     hand, *rules = result["left_out"]
     assert hand == {

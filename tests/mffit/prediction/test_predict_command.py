@@ -181,6 +181,8 @@ MISTAKES = {
     + "2,,900,200\n": "conditions.csv:3: column gamma_deg: this cell is empty; complete it or remove the row",
     TEXT + "2,two,900,200\n": 'conditions.csv:3: column gamma_deg: "two" is not a number [deg]; correct it',
     TEXT + "2,inf,900,200\n": 'conditions.csv:3: column gamma_deg: "inf" is not a number [deg]; correct it',
+    "alpha_deg,gamma_deg,Fz_N,phi_t_per_m\n2,1,900,-0.7\n2,1,900,-inf\n": 'conditions.csv:3: column phi_t_per_m: "-inf" is '
+    "a wheel that turns on the spot, which no sweep shows; write 1/R [1/m], 0 for a straight path",
     TEXT + "2,1,900,soft\n": 'conditions.csv:3: column p_kPa: "soft" is not a number [kPa]; correct it',
     TEXT + "2,1,900,2.2\n": "conditions.csv:3: column p_kPa: 2.2 is below 20 [kPa]; it looks like bar",
     TEXT
@@ -209,6 +211,10 @@ def test_a_mistake_in_the_conditions_is_a_sentence(foreign: Built, here, capsys,
         ({"Fz_N": [900.0, np.nan, 1.0]}, "column Fz_N: row 2: this cell is empty"),
         ({"gamma_deg": ["0", "1", None]}, "column gamma_deg: row 3: this cell is empty"),
         ({"kappa": [0.0, np.inf, 0.0]}, 'column kappa: row 2: "inf" is not a number'),
+        (
+            {"phi_t_per_m": [-0.7, -0.7, np.inf]},
+            'column phi_t_per_m: row 3: "inf" is a wheel that turns on the spot',
+        ),
         ({"V_mps": [0.0, 1.0, 1.0]}, "column V_mps: row 1: 0.0 is not above zero"),
     ],
 )
