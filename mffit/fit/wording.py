@@ -28,7 +28,7 @@ from mffit.measured import Measured
 from mffit.measured.wording import SOURCES
 from mffit.points import Points
 from mffit.quantities import CHANNELS
-from mffit.rig_errors import BESIDE, UNITS, WORDS, ZEROS, shown, unit_of, words_of
+from mffit.rig_errors import BESIDE, UNITS, WORDS, ZEROS, error_of, shown, unit_of, words_of
 from mffit.rounding import ascii_only, number, rounded, to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
 from tir.errors import listed
@@ -216,6 +216,18 @@ def one_sided_sentence(held: Mapping[str, float]) -> str:
         "sideslip has one sign wherever the wheel is driven or braked, or throughout, so that the zero of the sideslip axis "
         f"cannot be told from the tyre: it is held as declared, +- {u} deg, which is in the uncertainties; a few of these "
         "readings at the other sign of sideslip would tell it"
+    )
+
+
+def one_side_of_a_disc(held: Mapping[str, float]) -> str:
+    """A sentence on asymmetries that are held because a disc was run on one side only; empty if its zeros are not held."""
+    if not any(error_of(name) in ZEROS for name in held):
+        return ""
+    return (
+        "the formula misses these readings, and one side of a disc does not tell an asymmetry of the tyre or a zero of the rig "
+        "from what it misses of turn slip: asymmetries are held at their expected values and zeros as declared, with their "
+        "uncertainties, which brings the file nearer to the tyre on a straight road; the other side of the disc, or the tyre "
+        "turned on its rim, would tell them"
     )
 
 
@@ -433,7 +445,7 @@ def remarks(
         bands_sentence(found, fitted.held, values, why_held(found.unseen, points, config.tyre.side)),
         *(beside_sentence(band) for band in (found.combined, found.other_side) if band is not None),
         zeros_of_rig_sentence(zeros, found) if zeros and not config.rig.on_disc else "",
-        "" if points.one_sided else one_sided_sentence(fitted.held_rig),
+        (one_side_of_a_disc if points.one_sided else one_sided_sentence)(fitted.held_rig),
     ]
     return [f"{text[0].upper()}{text[1:]}." for text in said if text]
 
