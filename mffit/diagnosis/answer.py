@@ -145,7 +145,7 @@ def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier,
     if noise.weight is None:
         return ()
     usual = noise.u * np.sqrt(noise.weight)
-    off = np.abs(np.concatenate([points.channel(name) for name in noise.channels]) - after)
+    off = np.abs(noise.measured(points) - after)
     used = usual.copy()
     used[[i for i in outlying(noise) if off[i] > constants.DIAGNOSED_OUTLIER_RATIO * usual[i]]] = np.inf
     return outliers(points, *(Readings.split(rows, noise.channels) for rows in (usual, used, after)))

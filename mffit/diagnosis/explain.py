@@ -62,7 +62,7 @@ def _all_at_once(search: Search) -> tuple[Simulation, Noise]:
             moved = rms(((read - before) / noise.u)[noise.used])
             if moved < constants.NOISE_MOVED:
                 break
-        noise = learned_noise(search, state, noise)
+        noise = learned_noise(search, state)
     return state, noise
 
 
@@ -86,7 +86,7 @@ def _of_given_model(search: Search) -> Explanation:
     found = _selected_around(search, state, noise)
     if noise.offset and not noise.offset & found.chosen.ids:
         # Offsets of runs that were assumed in the noise but are not named are noise.
-        noise = learned_noise(search, found.without_run_offsets, noise, without_offsets=True)
+        noise = learned_noise(search, found.without_run_offsets, without_offsets=True)
         found = _selected_around(search, found.refined.state, noise, found.chosen)
     if search.inexact:  # coefficients act otherwise where only the named effects act with them
         found = _selected_around(search, found.refined.state, noise, found.chosen)
@@ -95,7 +95,7 @@ def _of_given_model(search: Search) -> Explanation:
 
 def _of_fitted_model(search: Search) -> Explanation:
     """The explanation of the gap of a model that was fitted to these points."""
-    noise, found, without_offsets = learned_noise(search, search.start, search.stated), None, False
+    noise, found, without_offsets = learned_noise(search, search.start), None, False
     for _ in range(constants.MOST_EXPLANATION_ROUNDS):
         last, state = found, search.start if found is None else found.refined.state
         found = _selected_around(search, state, noise, None if found is None else found.chosen)
@@ -107,7 +107,7 @@ def _of_fitted_model(search: Search) -> Explanation:
             break
         lost = bool(noise.offset) and not noise.offset & found.chosen.ids
         without_offsets, before = without_offsets or lost, noise
-        noise = learned_noise(search, found.without_run_offsets, noise, without_offsets=without_offsets)
+        noise = learned_noise(search, found.without_run_offsets, without_offsets=without_offsets)
         if last is not None and settled(before, noise) and not lost:
             break
     assert found is not None

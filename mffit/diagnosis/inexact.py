@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from mffit.fit.priors import scatter
 from mffit.least_squares import LeastSquaresProblem, Linear, root
@@ -15,6 +16,13 @@ from mffit.rig import Simulation
 from tir import Tyre
 from tir.frozen import ReadOnlyArrays
 from tir.parameters import TABLE
+
+
+def slopes_of(state: Simulation, points: Points, names: Sequence[str], channels: Iterable[str]) -> np.ndarray:
+    """Derivatives of the readings (c n, k) of a simulation by the named numbers; 0 where they are undefined."""
+    if not names:
+        return np.zeros((len(tuple(channels)) * len(points), 0))
+    return np.nan_to_num(state.sensitivities(points, names, channels)[1].stacked)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +38,7 @@ class Inexactness(ReadOnlyArrays):
 
     def columns(self, points: Points, state: Simulation, channels: Iterable[str] = SIDEWAYS) -> np.ndarray:
         """Changes of the readings (c n, k) by one prior standard deviation each."""
-        return self._slopes(points, state, channels) @ self.root
+        return slopes_of(state, points, self.names, channels) @ self.root
 
     def moved(
         self, points: Points, state: Simulation, at: Simulation, channels: Iterable[str] = SIDEWAYS
@@ -40,17 +48,16 @@ class Inexactness(ReadOnlyArrays):
         ``state`` is the simulation at which the derivatives are taken, as for :meth:`columns`.
         """
         away = np.array([at.number(name, points) for name in self.names]) - self.expected
-        return self._slopes(points, state, channels) @ away
+        return slopes_of(state, points, self.names, channels) @ away
 
-    def _slopes(self, points: Points, state: Simulation, channels: Iterable[str]) -> np.ndarray:
-        """Derivatives of the readings (c n, k) by the coefficients."""
-        if not self.names:
-            return np.zeros((len(tuple(channels)) * len(points), 0))
-        return np.nan_to_num(state.sensitivities(points, self.names, channels)[1].stacked)
+    @property
+    def precision(self) -> np.ndarray:
+        """A matrix (k, k) whose product with deviations from the mean has unit variance."""
+        return np.linalg.pinv(self.root)
 
     def added_to(self, problem: LeastSquaresProblem, first: int) -> LeastSquaresProblem:
         """The problem with this prior as additional residuals of its numbers from index ``first`` on."""
-        precision = np.linalg.pinv(self.root)
+        precision = self.precision
 
         def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             data, limits = problem.residual(x)
@@ -93,13 +100,9 @@ def with_zeros(
     known: Inexactness, priors: Mapping[str, tuple[float, float]], names: Sequence[str]
 ) -> Inexactness:
     """The prior with the named numbers of the rig added; ``priors`` has the value and standard uncertainty of each."""
-    added = [priors[name] for name in names]
-    k, m = len(known.names), len(names)
-    whole = np.zeros((k + m, known.root.shape[1] + m))
-    whole[:k, : known.root.shape[1]] = known.root
-    whole[k:, known.root.shape[1] :] = np.diag([u for _, u in added])
-    expected = np.concatenate([known.expected, [value for value, _ in added]])
-    return Inexactness((*known.names, *names), expected, whole)
+    values, u = zip(*(priors[name] for name in names), strict=True)
+    root = block_diag(known.root, np.diag(u))
+    return Inexactness((*known.names, *names), np.concatenate([known.expected, values]), root)
 
 
 def refitted(tyre: Tyre, *, curved: bool, stated: Mapping[str, float] | None = None) -> Inexactness:

@@ -16,16 +16,14 @@ from mffit.effects import Effect
 from mffit.rig import Simulation
 
 
-def learned_noise(
-    search: Search, state: Simulation, before: Noise, *, without_offsets: bool = False
-) -> Noise:
+def learned_noise(search: Search, state: Simulation, *, without_offsets: bool = False) -> Noise:
     """The noise with the scatter that remains around ``state`` if all candidates, coefficients and structure may explain more.
 
-    The search starts at the noise ``before`` of the last round. ``without_offsets``: runs have no offsets.
+    ``without_offsets``: runs have no offsets.
     """
     points = search.points
     stated = search.stated.without(state.floats(points))
-    problem = DiagnosisProblem(points, state, stated.alone())
+    problem = DiagnosisProblem(points, state, stated)
     predicted = np.nan_to_num(problem.predict(state))
     residual = problem.measured - predicted
     nothing = np.zeros((len(predicted), 0))
@@ -38,8 +36,7 @@ def learned_noise(
         [nothing, *(generous * g for g in others), search.inexact.columns(points, state, problem.channels)]
     )
     explained = ExplainingColumns(named=named, runs=runs, smooth=search.coarse, withdrawn=without_offsets)
-    start = replace(stated, scatter=before.scatter)
-    return learned(start, residual, explained, predicted).alone()
+    return learned(stated, residual, explained, predicted)
 
 
 def beyond_memory(noise: Noise, candidates: Sequence[Effect]) -> list[Effect]:

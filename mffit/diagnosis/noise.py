@@ -12,6 +12,7 @@ import numpy as np
 
 from mffit.as_json import keys
 from mffit.linearised.chained import ChainedErrors, Memory, chains_of
+from mffit.points import Points
 from mffit.quantities import SIDEWAYS, column
 from mffit.scatter import finite_median, rms
 from tir.frozen import ReadOnlyArrays
@@ -121,6 +122,10 @@ class Noise(ReadOnlyArrays):
     def offset(self) -> frozenset[str]:
         """Ids of the offsets of runs that are significant beyond autocorrelated errors."""
         return frozenset(effect for effect, found in self.offsets.items() if found.beyond > 0.0)
+
+    def measured(self, points: Points) -> np.ndarray:
+        """The readings (c n,) of points."""
+        return np.concatenate([points.channel(name) for name in self.channels])
 
     def of_channel(self, readings: np.ndarray, channel: str) -> np.ndarray:
         """The readings (n,) of one channel, out of (c n,)."""

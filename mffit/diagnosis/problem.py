@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -11,7 +11,7 @@ from scipy.linalg import block_diag
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
-from mffit.diagnosis.inexact import EXACT, Inexactness
+from mffit.diagnosis.inexact import EXACT, Inexactness, slopes_of
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.priors import anchor, beyond_declaration, moving, number, starts, switched, usual_start
 from mffit.diagnosis.smooth import Smooth, StructureBeside
@@ -20,27 +20,10 @@ from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solutio
 from mffit.left_out import moved_without
 from mffit.points import Points
 from mffit.rig import Simulation
-from tir.frozen import ReadOnlyArrays
 from tir.parameters import BY_NAME as COEFFICIENTS
 
 STEEPEST = 1e5
 """Upper limit of the norm of a scaled column in units of the noise, so that it does not swamp sums of squares."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class LinearisedNumbers(ReadOnlyArrays):
-    """Readings as linear functions of all free numbers of an explanation."""
-
-    names: tuple[str, ...]  #: (k,)
-    slopes: np.ndarray  #: (c n, k) derivatives of the readings
-    white: np.ndarray  #: (m, k) whitened derivatives
-    residual: np.ndarray  #: (m,) whitened residual, simulated less measured
-    information: np.ndarray  #: (k, k) information matrix of readings and priors
-    gradient: np.ndarray  #: (k,) half the gradient of the sum of squares, zero at the solution
-
-    def moved_without(self, rows: np.ndarray) -> np.ndarray:
-        """Change (k,) of the numbers if some readings, given by positions among the used ones, are left out."""
-        return moved_without(self.white[rows], self.residual[rows], self.information, self.gradient)
 
 
 class DiagnosisProblem:
@@ -63,7 +46,7 @@ class DiagnosisProblem:
         self.points, self.start, self.beside = points, start, beside
         self.noise = noise if beside is None else beside.noise
         self.declared, self.offset = declared or {}, offset
-        self.measured = np.concatenate([points.channel(name) for name in noise.channels])
+        self.measured = noise.measured(points)
         if offset is not None:
             self.measured = self.measured + offset
         self._at_amplitudes: dict[frozenset[tuple[str, float]], DiagnosisProblem] = {}
@@ -180,27 +163,30 @@ class DiagnosisProblem:
         ]
         return numbers, inexact.without(frozenset(free.name for free in frees))
 
-    def linearised(self, refined: Hypothesis, inexact: Inexactness = EXACT) -> LinearisedNumbers:
-        """The linear model of all numbers of a refined hypothesis at its solution; numbers at a bound are held."""
+    def without_groups(
+        self, refined: Hypothesis, inexact: Inexactness, group: np.ndarray
+    ) -> tuple[list[str], np.ndarray, list[np.ndarray]]:
+        """Names (k,) of the numbers of a refined hypothesis, the derivatives (c n, k) of the readings by them, and their changes.
+
+        By group of points, (n,) indices, the change (k,) if it is left out, to first order. Numbers at a bound are held.
+        """
         numbers, prior = self._refined_numbers(refined, inexact)
         moved = [n for n in numbers if not touches(n.start, n.lower, n.upper)]
-        precision = np.linalg.pinv(prior.root)
         now = np.array([refined.state.number(name, self.points) for name in prior.names])
+        precision = prior.precision
         information = block_diag(np.diag([n.spread**-2.0 for n in moved]), precision.T @ precision)
         away = np.concatenate([[n.start - n.expected for n in moved], now - prior.expected])
         names = [*(n.name for n in moved), *prior.names]
-        slopes = np.zeros((len(self.measured), 0))
-        if names:
-            slopes = np.nan_to_num(refined.state.sensitivities(self.points, names, self.channels)[1].stacked)
+        slopes = slopes_of(refined.state, self.points, names, self.channels)
         white, residual = self.noise.whiten(slopes), -self.whitened(refined.state)
-        return LinearisedNumbers(
-            names=tuple(names),
-            slopes=slopes,
-            white=white,
-            residual=residual,
-            information=information + white.T @ white,
-            gradient=information @ away + white.T @ residual,
-        )
+        gradient = information @ away + white.T @ residual
+        information = information + white.T @ white
+        of_row = np.tile(group, len(self.channels))[self.noise.used]
+        changes = [
+            moved_without(white[rows], residual[rows], information, gradient)
+            for rows in (np.flatnonzero(of_row == k) for k in range(int(group.max()) + 1))
+        ]
+        return names, slopes, changes
 
     def promising(self, before: Hypothesis, candidates: Sequence[Effect]) -> list[tuple[Effect, float]]:
         """The candidates with their gains of log evidence to first order, best first."""
@@ -221,9 +207,7 @@ class DiagnosisProblem:
     def columns(self, state: Simulation, effects: Sequence[Effect]) -> dict[Effect, list[np.ndarray]]:
         """By effect, changes of the readings (c n, k) at its usual size: by derivatives, and by finite steps to each start."""
         names = [free.name for free in moving(effects)]
-        slopes = np.empty((len(self.measured), 0))
-        if names:
-            slopes = np.nan_to_num(state.sensitivities(self.points, names, self.channels)[1].stacked)
+        slopes = slopes_of(state, self.points, names, self.channels)
         here, out = np.nan_to_num(self.predict(state)), {}
         for effect in effects:
             frees = moving((effect,))

@@ -180,8 +180,7 @@ class Diagnosis(ReadOnlyArrays, Brief):
     @property
     def gap_examined(self) -> Gap:
         """Gap of the given model at the examined points, after known errors were subtracted from the readings."""
-        measured = np.concatenate([self.points.channel(name) for name in self.noise.channels])
-        return gap(measured - self.before, self.noise)
+        return gap(self.noise.measured(self.points) - self.before, self.noise)
 
     @property
     def repaired(self) -> tuple[AcceptedEffect, ...]:

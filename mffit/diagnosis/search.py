@@ -64,8 +64,7 @@ class Search:
     @cached_property
     def misfit(self) -> np.ndarray:
         """Measured minus simulated (c n,) of the given model."""
-        measured = np.concatenate([self.points.channel(name) for name in self.channels])
-        return measured - self.start.predict(self.points, self.channels)
+        return self.stated.measured(self.points) - self.start.predict(self.points, self.channels)
 
     @cached_property
     def coarse(self) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 from mffit.as_json import keys
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
-from mffit.diagnosis.inexact import EXACT, Inexactness
+from mffit.diagnosis.inexact import EXACT, Inexactness, slopes_of
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.points import Points
@@ -127,22 +127,17 @@ def _left_out(
     problem: DiagnosisProblem, hypothesis: Hypothesis, inexact: Inexactness, group: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Measured less predicted (c n,), with each group (n,) predicted from all others; and this for the given property file."""
-    found, state = problem.linearised(hypothesis, inexact), hypothesis.state
-    given = with_given_file(state, problem.start)
-    after, before = (problem.measured - problem.predict(one) for one in (state, given))
-    of_rig = [
-        k for k, name in enumerate(found.names) if (e := error_of(name)) is not None and e.kind != "tyre"
-    ]
-    slopes = np.zeros_like(found.slopes)
-    if of_rig:
-        there = given.sensitivities(problem.points, [found.names[k] for k in of_rig], problem.channels)[1]
-        slopes[:, of_rig] = np.nan_to_num(there.stacked)
+    names, slopes, changes = problem.without_groups(hypothesis, inexact, group)
+    given = with_given_file(hypothesis.state, problem.start)
+    after, before = (problem.measured - problem.predict(one) for one in (hypothesis.state, given))
+    of_rig = [k for k, name in enumerate(names) if (e := error_of(name)) is not None and e.kind != "tyre"]
+    there = np.zeros_like(slopes)
+    there[:, of_rig] = slopes_of(given, problem.points, [names[k] for k in of_rig], problem.channels)
     every = np.tile(group, len(problem.channels))
-    for number in range(int(group.max()) + 1):
-        change = found.moved_without(np.flatnonzero(every[problem.noise.used] == number))
+    for number, change in enumerate(changes):
         rows = every == number
-        after[rows] -= found.slopes[rows] @ change
-        before[rows] -= slopes[rows] @ change
+        after[rows] -= slopes[rows] @ change
+        before[rows] -= there[rows] @ change
     return after, before
 
 
