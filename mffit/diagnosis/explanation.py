@@ -90,12 +90,8 @@ class Explanation(ReadOnlyArrays):
 
     def only(self, effects: tuple[Effect, ...]) -> Explanation:
         """The explanation with some of its effects only, refitted."""
-        chosen = refitted(self.problem, self.chosen, effects)
-        problem = self.problem.at_amplitude(chosen.smooth)
-        if problem is self.problem:
-            return self.choosing(chosen)
-        bumps = bump_scan(problem.points, problem.noise)
-        return replace(self, problem=problem, bumps=bumps).choosing(refitted(problem, chosen, effects))
+        problem, chosen = self.problem.with_structure_of(refitted(self.problem, self.chosen, effects))
+        return replace(self, problem=problem, bumps=self._bumps_in(problem)).choosing(chosen)
 
     def contested(self) -> Explanation:
         """The explanation with all candidates tried alone, in addition to the chosen effects, and in the place of each."""
@@ -155,10 +151,9 @@ class Explanation(ReadOnlyArrays):
 
     def left(self, hypothesis: Hypothesis) -> float:
         """Gain of log evidence by the best bump in addition to a hypothesis; at least 0."""
-        problem, bumps = self.problem.at_amplitude(hypothesis.smooth), self.bumps
-        if problem is not self.problem:
-            hypothesis, bumps = (
-                refitted(problem, hypothesis, hypothesis.effects),
-                bump_scan(problem.points, problem.noise),
-            )
-        return max(bumps.best(hypothesis).gain, 0.0)
+        problem, own = self.problem.with_structure_of(hypothesis)
+        return max(self._bumps_in(problem).best(own).gain, 0.0)
+
+    def _bumps_in(self, problem: DiagnosisProblem) -> BumpScan:
+        """The bumps of another covariance."""
+        return self.bumps if problem is self.problem else bump_scan(problem.points, problem.noise)

@@ -82,6 +82,11 @@ class DiagnosisProblem:
             kept[key] = other
         return kept[key]
 
+    def with_structure_of(self, found: Hypothesis) -> tuple[DiagnosisProblem, Hypothesis]:
+        """The problem with the smooth structure found with a hypothesis in the covariance, and the hypothesis refitted in it."""
+        own = self.at_amplitude(found.smooth)
+        return own, found if own is self else refitted(own, found, found.effects)
+
     def whitened(self, state: Simulation) -> np.ndarray:
         """Whitened residual (m,), measured minus simulated."""
         return self.noise.whiten(np.nan_to_num(self.measured - self.predict(state)))

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.priors import log_prior, price
-from mffit.diagnosis.problem import DiagnosisProblem, refitted
+from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.subsets import LinearSets
 from mffit.effects import Effect
 from mffit.rig import Simulation
@@ -67,7 +67,7 @@ def select(
 def contest(problem: DiagnosisProblem, before: Hypothesis, candidates: Sequence[Effect]) -> Contest:
     """Every candidate in addition to the effects of ``before``; those that gain much to first order are fitted in full."""
     trials = []
-    ranked = _at_own_structure(problem, before)
+    ranked = problem.with_structure_of(before)
     gains = ranked[0].promising(ranked[1], [e for e in candidates if e.id not in before.ids])
     for rank, (effect, gain) in enumerate(gains):
         effects = (*before.effects, effect)
@@ -94,18 +94,12 @@ def _climbed(
         members = max(ends, key=sets.weight)
         effects = sets.effects(sets.in_order(members))
         at = here.fit(effects, sets.numbers(members)) if effects else here.null
-        found = _at_own_structure(here, at)
+        found = here.with_structure_of(at)
         if best is None or _posterior(*found, candidates) > _posterior(*best, candidates):
             best = found
         if at.ids in met:
             return best
         met.add(at.ids)
-
-
-def _at_own_structure(problem: DiagnosisProblem, found: Hypothesis) -> tuple[DiagnosisProblem, Hypothesis]:
-    """The hypothesis with its own most likely smooth structure in the covariance."""
-    own = problem.at_amplitude(found.smooth)
-    return own, found if own is problem else refitted(own, found, found.effects)
 
 
 def _posterior(problem: DiagnosisProblem, found: Hypothesis, candidates: Sequence[Effect]) -> float:

@@ -22,6 +22,7 @@ from mffit.diagnosis.rest import Answer
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import CATALOG, Effect, Free
 from mffit.errors import InputError
+from mffit.pipeline.diagnosing import write_diagnosis
 from mffit.points import make_points
 from mffit.report import text
 from mffit.rig import Simulation
@@ -74,7 +75,7 @@ def test_a_suspicion_is_listed_and_not_repaired(tmp_path):
     assert not effect.repaired
     assert found.gap_after == found.gap_before
     assert found.gap_named.rms("Fy") < 0.9 * found.gap_before.rms("Fy")
-    pipeline.diagnosing.write_diagnosis(found, tmp_path)
+    write_diagnosis(found, tmp_path)
     assert not (tmp_path / "warm.tir").exists()
     assert json.loads((tmp_path / "diagnosis.json").read_text())["model_after"] == found.given_file
     assert found.answer is Answer.UNDECIDED
