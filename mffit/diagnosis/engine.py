@@ -11,7 +11,7 @@ import numpy as np
 from mffit.config import Config, axis_signs, declared_faults
 from mffit.diagnosis.answer import answer, named_effects, not_accepted
 from mffit.diagnosis.conditions import by_condition
-from mffit.diagnosis.explain import explain, only_first
+from mffit.diagnosis.explain import explain
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.inexact import with_zeros
@@ -155,5 +155,6 @@ def _confirmed(
     """The explanation if left-out sweeps confirm it, else its first effect alone, else none; its validation; the refusal."""
     done, validation, refused = checked(found, given, search)
     if refused is not None and len(found.chosen.effects) > 1:
-        done, validation, _ = checked(only_first(found, search.inexact), given, search)
+        first = found.only(found.chosen.effects[:1]).with_coefficients(search.inexact)
+        done, validation, _ = checked(first, given, search)
     return done, validation, refused

@@ -162,8 +162,3 @@ def significant(found: Explanation, inexact: Inexactness) -> Explanation:
     if len(kept) == len(found.chosen.effects):
         return found
     return significant(found.only(kept).with_coefficients(inexact), inexact)
-
-
-def only_first(found: Explanation, inexact: Inexactness) -> Explanation:
-    """The explanation with only the effect that explains most."""
-    return found.only(found.chosen.effects[:1]).with_coefficients(inexact)

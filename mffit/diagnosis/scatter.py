@@ -209,10 +209,6 @@ class ScatterOfChannel(ReadOnlyArrays):
         }
         return replace(self, chains=chains, **parts)
 
-    def with_runs(self, runs: np.ndarray) -> ScatterOfChannel:
-        """The channel with columns of run offsets (m, k) at their usual size."""
-        return replace(self, runs=runs)
-
     @property
     def sample(self) -> ScatterOfChannel:
         """The channel thinned to every k-th sweep, if it has more readings than the estimation of scatter needs."""
@@ -321,7 +317,7 @@ def _of_channel(
         if columns.shape[1]:
             odds, size = math.inf, 0.0
             for one, alone in rivals:
-                shifted = one.with_runs(columns)
+                shifted = replace(one, runs=columns)
                 beside = _descriptions(shifted, offsets=True, only=span)
                 size = shifted.numbers(beside[0].x, beside[0].by).offsets
                 odds = min(odds, _log_sum(beside) - _log_sum(alone))
@@ -329,7 +325,7 @@ def _of_channel(
             if odds > most:
                 most, best = odds, columns
     if best is not None:
-        found, channel, tails = _weighted(plain.with_runs(best), offsets=True, only=span)
+        found, channel, tails = _weighted(replace(plain, runs=best), offsets=True, only=span)
     return found[0], channel, tails, offsets
 
 
