@@ -104,10 +104,12 @@ class Correction(ReadOnlyArrays):
         fades with the combined slip: the larger the sideslip, the longer it lasts.
         """
         kappa, known = by_name["kappa"], self.nodes.get("kappa", np.zeros(1))
-        beyond = kappa - np.clip(kappa, known[0], known[-1])
+        beyond = kappa - np.minimum(
+            np.maximum(kappa, known[0]), known[-1]
+        )  # np.clip is slower for one number
         lasts = constants.SLIP_OF_FREE_ROLLING**2 + np.tan(by_name["alpha"]) ** 2
         fades = np.multiply.outer(self._of_free_rolling, 0.5 * beyond**2 / lasts)
-        return np.clip(by_name["Fz"] / self.lowest, 0.0, 1.0) * np.exp(-fades)
+        return np.minimum(np.maximum(by_name["Fz"] / self.lowest, 0.0), 1.0) * np.exp(-fades)
 
     @cached_property
     def _of_free_rolling(self) -> np.ndarray:
