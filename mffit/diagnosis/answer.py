@@ -18,7 +18,7 @@ from mffit.diagnosis.limits import Limit, limits
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import DiagnosisNote
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
-from mffit.diagnosis.repair import Outcome, Repair
+from mffit.diagnosis.repair import Confirmed, Repair
 from mffit.diagnosis.rest import Answer, Rest
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis, apart
 from mffit.diagnosis.search import Search
@@ -56,10 +56,10 @@ def answered(
 
 
 def answer(
-    search: Search, outcome: Outcome, repair: Repair, notes: Sequence[DiagnosisNote], gap_before: Gap
+    search: Search, confirmed: Confirmed, repair: Repair, notes: Sequence[DiagnosisNote], gap_before: Gap
 ) -> Diagnosis:
     """The record of an explanation; ``gap_before`` is the gap of all uncorrected readings."""
-    found, given, named, done = outcome.found, outcome.given, outcome.named, repair.explanation
+    found, given, named, done = confirmed.found, confirmed.given, confirmed.named, repair.explanation
     scatter, u = found.scatter, _stated_u(done, found)
     before = given.predict(given.start)
     explained, after = (
@@ -72,8 +72,8 @@ def answer(
     diagnosis = Diagnosis(
         headline="",
         reasons=(),
-        answer=answered(outcome.rest, named, outcome.alternatives),
-        rest=outcome.rest,
+        answer=answered(confirmed.rest, named, confirmed.alternatives),
+        rest=confirmed.rest,
         name=search.config.tyre.name,
         points=given.points,
         noise=scatter,
@@ -85,14 +85,14 @@ def answer(
         validation=repair.validation,
         where=where(given.points, given.measured - before, scatter),
         effects=tuple(_with_repair(one, done, u) for one in named),
-        alternatives=outcome.alternatives,
+        alternatives=confirmed.alternatives,
         contests=found.contests or ((found.further,) if found.further else ()),
-        unexplained_where=_remaining(found, given.measured - explained) if outcome.rest else (),
+        unexplained_where=_remaining(found, given.measured - explained) if confirmed.rest else (),
         bump=found.bump if found.bump.found else None,
         smooth=found.smooth if found.smooth.found else None,
         outliers=_outliers(given.points, explained, scatter),
         coefficients=dict(done.coefficients),
-        limits=_limits(outcome, search.candidates),
+        limits=_limits(confirmed, search.candidates),
         given=given.start,
         state=done.refined.state,
         signs=axis_signs(search.config),
@@ -106,10 +106,10 @@ def answer(
     return replace(diagnosis, headline=wording.headline(diagnosis), reasons=wording.reasons(diagnosis))
 
 
-def _limits(outcome: Outcome, candidates: Sequence[Effect]) -> tuple[Limit, ...]:
+def _limits(confirmed: Confirmed, candidates: Sequence[Effect]) -> tuple[Limit, ...]:
     """The limits of the candidates that are neither named nor tied with a named one."""
-    known = {i for one in outcome.named for i in (one.effect.id, *one.tied_with)}
-    return limits(outcome.found.problem, outcome.found.chosen, candidates, known)
+    known = {i for one in confirmed.named for i in (one.effect.id, *one.tied_with)}
+    return limits(confirmed.found.problem, confirmed.found.chosen, candidates, known)
 
 
 def _in_file(effect: Effect) -> bool:

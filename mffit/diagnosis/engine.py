@@ -20,7 +20,7 @@ from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import DiagnosisNote, NoRepair, NotVisible, OneSweep, TakenOff, WithinPlay
 from mffit.diagnosis.priors import declared_priors, zeros_of_setups
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.repair import Outcome, Repair, checked, repair
+from mffit.diagnosis.repair import Confirmed, Repair, checked, repair
 from mffit.diagnosis.rest import hardly_this_tyre, remaining
 from mffit.diagnosis.result import Diagnosis
 from mffit.diagnosis.search import NOTHING_KNOWN, Asked, Search
@@ -68,11 +68,11 @@ def diagnose(
     found, validation, refused = _confirmed(found, given, search)
     found = found if found.further is not None else found.contested()
     rest = (*beyond, *remaining(found))
-    outcome = Outcome(found, given, named_effects(found, given), not_accepted(found), rest)
-    done = repair(outcome, validation, search)
+    confirmed = Confirmed(found, given, named_effects(found, given), not_accepted(found), rest)
+    done = repair(confirmed, validation, search)
     notes = _notes(search, found, wrong, done, refused)
     before = raw_gap(points if asked.as_read is None else asked.as_read, start, kept, found.scatter)
-    return answer(search, outcome, done, notes, before)
+    return answer(search, confirmed, done, notes, before)
 
 
 def _notes(

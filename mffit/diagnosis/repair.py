@@ -18,7 +18,7 @@ from mffit.effects import Effect
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Outcome:
+class Confirmed:
     """The explanation that left-out sweeps confirm, and what follows from it."""
 
     found: Explanation
@@ -57,23 +57,23 @@ def checked(
     return found.withdrawn(), validation.without_repair(), refused
 
 
-def repair(outcome: Outcome, validation: Validation, search: Search) -> Repair:
+def repair(confirmed: Confirmed, validation: Validation, search: Search) -> Repair:
     """The repair of the named effects that are likely, or of every one if that is asked.
 
     Tied effects are one answer, with the confidence of the whole tie. ``validation`` belongs to all named effects together.
     Effects of the tyre are repaired only if the corrected property file predicts left-out sweeps better than the given one,
     judged by all channels together, with the errors of rig and environment taken out of the readings.
     """
-    found, named = outcome.found, outcome.named
+    found, named = confirmed.found, confirmed.named
     refused: NoRepair | FileKept | None = None
 
     def only(effects: Sequence[Effect]) -> tuple[Explanation, Validation, NoRepair | None]:
-        return checked(found.only(tuple(effects)).with_coefficients(search.inexact), outcome.given, search)
+        return checked(found.only(tuple(effects)).with_coefficients(search.inexact), confirmed.given, search)
 
     likely = [
         one.effect
         for one in named
-        if search.asked.repair_all or one.confidence_of_tie(outcome.alternatives) >= constants.LIKELY_ANSWER
+        if search.asked.repair_all or one.confidence_of_tie(confirmed.alternatives) >= constants.LIKELY_ANSWER
     ]
     if len(likely) < len(named):
         found, validation, refused = only(likely)

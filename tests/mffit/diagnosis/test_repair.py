@@ -165,7 +165,7 @@ def test_one_number_of_all_channels_decides_about_the_file(monkeypatch, gain_of_
     both, rig = explanation(GRIP, TEMPERATURE), explanation(TEMPERATURE)
     both.only = lambda effects: SimpleNamespace(with_coefficients=lambda _: explanation(*effects))
     monkeypatch.setattr(repairing, "validate", lambda *_, **__: check)
-    outcome = repairing.Outcome(found=both, given=None, named=named, alternatives={}, rest=())
-    done = repairing.repair(outcome, check, SimpleNamespace(inexact=EXACT, asked=Asked()))
+    confirmed = repairing.Confirmed(found=both, given=None, named=named, alternatives={}, rest=())
+    done = repairing.repair(confirmed, check, SimpleNamespace(inexact=EXACT, asked=Asked()))
     assert done.explanation.chosen.effects == (both if delivered else rig).chosen.effects
     assert isinstance(done.refused, FileKept) is not delivered
