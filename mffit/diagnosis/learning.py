@@ -17,7 +17,7 @@ from mffit.rig import Simulation
 
 
 def learned_noise(search: Search, state: Simulation, *, without_offsets: bool = False) -> Noise:
-    """The noise with the scatter that remains around ``state`` if all candidates, coefficients and structure may explain more.
+    """The noise with the scatter around ``state`` that remains if all candidates, coefficients and structure may explain it.
 
     ``without_offsets``: runs have no offsets.
     """
