@@ -45,6 +45,7 @@ class Parameter:
     """Force or moment that must be measured to identify it; "" if it is not a coefficient of one."""
     symmetry: frozenset[str]  #: "odd", "shift", "conicity"; see the properties of these names
     disc_spread: float | None  #: spread around the base file's value to which runs on a disc hold it, 1 sigma
+    symmetric_spread: float | None  #: spread of an asymmetry among tyres of symmetric construction, 1 sigma
     side_spread: float | None  #: the same for sideslip to one side only, where no data show it
     tyres_spread: float | None
     """Size that two thirds of published tyres have at most, of those that have it at all."""
@@ -136,6 +137,7 @@ def _parameter(order: int, row: dict[str, str]) -> Parameter:
         divisor=row["divisor"] == "yes",
         symmetry=frozenset(row["symmetry"].split()),
         disc_spread=float(tied["disc"]) if "disc" in tied else None,
+        symmetric_spread=float(tied["symmetric"]) if "symmetric" in tied else None,
         side_spread=float(tied["side"]) if "side" in tied else None,
         tyres_spread=float(tied["tyres"].partition("/")[0]) if "tyres" in tied else None,
         tyres=int(tied.get("tyres", "/0").partition("/")[2]),

@@ -71,7 +71,10 @@ class FitPlan:
             self,
             cover=cover,
             rig=tuple(number for number in self.rig if number.name not in names),
-            held={**self.held, **{name: self.scatter[name] for name in names if name not in rig}},
+            held={
+                **self.held,
+                **{n: BY_NAME[n].symmetric_spread or self.scatter[n] for n in names if n not in rig},
+            },
             held_rig={**self.held_rig, **rig},
         )
 

@@ -87,7 +87,7 @@ def missed_at_readings(
         missed, residual = known.missed(name, known.points(fitted, at)), points.channel(name) - model[name]
         read, u = np.isfinite(residual), run[f"u_{column(name, 'run')}"].to_numpy()
         seen: dict[str, list[_Seen]] = {side: [] for side in SIDES}
-        for rows in (own[read[own]] for own in groups):
+        for rows in (part for own in groups if len(part := own[read[own]])):
             F = force[name][rows]
             large = np.abs(F) >= constants.LARGE_FORCE * np.max(np.abs(F), initial=0.0)
             signs = {"": large, "positive": large & (F > 0.0), "negative": large & (F < 0.0)}

@@ -8,7 +8,7 @@ from conftest import CAMBERS, LOADS, Built, brush
 
 import tir
 from mffit.prediction import MissedAtReadings, missed_sentence
-from mffit.prediction.region import SIDES, MissedRegion, _clearest, _Seen
+from mffit.prediction.region import SIDES, MissedRegion, _clearest, _Seen, missed_at_readings
 
 NAMES = ("Fz", "p")
 PLAN = [(load, pressure) for load in (500.0, 1500.0, 2500.0) for pressure in (7e4, 1e5) for _ in range(4)]
@@ -124,3 +124,11 @@ def test_no_cause_is_said_of_what_is_no_grip():
     assert sentence.endswith(
         "its largest Fy at negative sideslip at 500 N of load is 9 to 12 % too high in all 14 sweeps there"
     )
+
+
+def test_a_sweep_in_which_a_channel_was_not_read_is_no_region(foreign: Built):
+    result = foreign.result
+    points, model = result.points, result.fit.model
+    part = points.replace(Fy=np.where(points.sweep == 0, np.nan, points.Fy))
+    found = missed_at_readings(result.prediction, result.fit.tyre, part, model, {"Fy"})
+    assert found["Fy"].size == pytest.approx(result.fit.left_by_formula.channels["Fy"].size, rel=0.3)
