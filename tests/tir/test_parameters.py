@@ -83,7 +83,7 @@ def _sound_tie(row: dict[str, str]) -> None:
     for tie in row["tied"].split():
         where, _, spread = tie.partition(":")
         spread, _, files = spread.partition("/")
-        assert where in ("disc", "side", "tyres"), row["name"]
+        assert where in ("disc", "symmetric", "side", "tyres"), row["name"]
         assert float(spread) > 0.0, row["name"]
         assert (where == "tyres") == bool(files), (
             f"{row['name']}: the number of files stands behind the spread of tyres"
