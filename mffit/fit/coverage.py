@@ -34,7 +34,6 @@ keys(StageCoverage, "stage supported held missing")
 LACKING = {
     "camber": "no camber was run",
     "coupled": "no sweep combines sideslip and camber",
-    "side": "neither sideslip nor camber was run",
     "kappa": "no sweep varies longitudinal slip",
     "combined": "longitudinal slip was run at one sideslip only, which does not show how it falls with sideslip",
     "side_force": "no sweep combines longitudinal slip and side force, from sideslip or camber",
@@ -84,7 +83,6 @@ def design(points: Points, side: str) -> Design:
         "coupled": np.any(cambered & slipping),
         "speeds": levels.count(points.V, levels.SPEED),
         "sideslips": levels.count(points.alpha, levels.SIDESLIP),
-        "side": np.any(slipping | cambered),
         "kappa": np.any(driven),
         "combined": levels.count(np.abs(points.alpha[driven]), levels.SIDESLIP) - 1 if np.any(driven) else 0,
         "side_force": np.any(driven & (slipping | cambered)),
