@@ -8,7 +8,7 @@ from tir import Tyre
 
 NOT_MEASURED = ("default", "estimate")
 """First words of the comments of values that were not measured."""
-NO_FX = "its Fx is estimated, not measured"
+NO_FX = "Fx is estimated"
 
 
 def words_on_tested(end: float, unit: str) -> str:

@@ -39,8 +39,11 @@ class Components:
         )
 
     def over_one_input(self, smooth: SmoothFunctions) -> Iterator[Components]:
-        """Variants in which the model error changes over one input only."""
-        longest = [constants.LONGEST_LENGTH * one.width for one in smooth.inputs]
+        """Variants in which the model error changes over one input only, and over the curvature of a path as it is."""
+        longest = [
+            length if one.name == "phi_t" else constants.LONGEST_LENGTH * one.width
+            for one, length in zip(smooth.inputs, self.lengths, strict=True)
+        ]
         for i, length in enumerate(self.lengths):
             yield replace(self, lengths=(*longest[:i], length, *longest[i + 1 :]))
 

@@ -82,6 +82,7 @@ def test_spin_and_build_have_one_list_of_rules(tmp_path, capsys):
     assert {rule.id for rule in RULES if rule.when is When.MEASURED} == {
         "contradictory-sideslip-zeros",
         "drift-between-sweeps",
+        "sweeps-of-one-way",
         "unpublished-camber-reduction",
     }
 

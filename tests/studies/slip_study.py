@@ -14,6 +14,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import harness
@@ -297,7 +298,7 @@ def _radius_errors(model: tir.Tyre, true: tir.Tyre, kind: Kind) -> dict[str, flo
 
     def rolling(tyre: tir.Tyre) -> tuple[np.ndarray, ...]:
         Re = tyre.state(Fz, Vx=V, p=p).Re
-        loaded = loaded_radius(tyre.values, Fz, 0.0, 0.0, 0.0, V / Re, p)
+        loaded = loaded_radius(tyre.values, SimpleNamespace(Fx=0.0, Fy=0.0, Fz=Fz), 0.0, V / Re, p)
         return 1e3 * loaded, 1e3 * Re, tyre(Fz, Vx=V, p=p).My
 
     names = ("loaded radius [mm]", "rolling radius [mm]", "My [Nm]")

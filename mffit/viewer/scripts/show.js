@@ -233,7 +233,8 @@ function start() {
   byId("loads").checked = false;
   for (const control of content.controls) set(control.name, control.start);
 }
-byId("key-tested").hidden = !tyres.some(tyre => tyre.estimated.length || Object.values(tyre.ranges).some(range => range.tested));
+const dashed = tyre => tyre.estimated.length || Object.values(tyre.ranges).some(range => range.tested);
+byId("key-tested").hidden = !tyres.some(dashed);
 if (matchMedia("(max-width: 820px)").matches) byId("controls").open = false;
 addEventListener("resize", () => update());
 onThemeChange(all);

@@ -14,6 +14,7 @@ import zlib
 from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -164,7 +165,9 @@ def test_the_loaded_radius_of_a_page_carries_the_load():
     ):
         at = dict(Fz=Fz, alpha=alpha, gamma=gamma, kappa=kappa, Vx=Vx, p=p, turn_slip=False)
         out = tyre(**at)
-        wanted = loaded_radius(tyre.values, Fz, out.Fx, out.Fy, gamma, tyre.state(**at).omega, p)
+        wanted = loaded_radius(
+            tyre.values, SimpleNamespace(Fx=out.Fx, Fy=out.Fy, Fz=Fz), gamma, tyre.state(**at).omega, p
+        )
         found = context.eval(f"radius({Fz}, {alpha}, {gamma}, {kappa}, 0, {Vx}, {p}).RL")
         assert found == pytest.approx(float(wanted), rel=1e-6), at
 
