@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.linalg.blas import dtrmm
-from scipy.linalg.lapack import dsytrf, dsytri, dtrtri
+from scipy.linalg.lapack import dtrtri
 
 from tir.frozen import ReadOnlyArrays
 
@@ -166,9 +166,8 @@ class Mixed(ReadOnlyArrays):
             moved.append(w * (r - x @ found.mean - own @ pull))
             order.append(out)
         through = np.concatenate(whitened) @ found.root
-        factor, order_of_pivots, _ = dsytrf(block - through @ through.T, lower=1)
-        below = np.tril(dsytri(factor, order_of_pivots, lower=1)[0])
-        covariance = below + np.tril(below, -1).T
+        covariance = np.linalg.inv(block - through @ through.T)
+        covariance = 0.5 * (covariance + covariance.T)
         return LeftOutReadings(
             rows=np.concatenate(order), error=covariance @ np.concatenate(moved), covariance=covariance
         )
