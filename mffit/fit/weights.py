@@ -95,7 +95,8 @@ class _Beside(NamedTuple):
     noise: np.ndarray
     there: np.ndarray  #: indices of the neighbours
     inside: np.ndarray  #: whether there is such a neighbour
-    place: np.ndarray  #: (n, d)
+    across: np.ndarray  #: (n, k) distances to the neighbours
+    among: np.ndarray  #: (n, k, k) distances of the neighbours from one another
 
     @classmethod
     def of(cls, residual: np.ndarray, sweep: np.ndarray, place: np.ndarray, noise: np.ndarray) -> _Beside:
@@ -104,7 +105,15 @@ class _Beside(NamedTuple):
         there = np.arange(n)[:, None] + np.array(constants.OUTLIER_NEIGHBOURS, dtype=int)
         inside = (there >= 0) & (there < n)
         there = np.clip(there, 0, max(n - 1, 0))
-        return cls(residual, noise, there, inside & (sweep[there] == sweep[:, None]), place)
+        beside = place[there]
+        return cls(
+            residual=residual,
+            noise=noise,
+            there=there,
+            inside=inside & (sweep[there] == sweep[:, None]),
+            across=_distances(place[:, None, :], beside),
+            among=_distances(beside[:, :, None, :], beside[:, None, :, :]),
+        )
 
     def likeliest(self, rows: np.ndarray, sweep: np.ndarray) -> np.ndarray:
         """Size and length (n, 2) of what the formula misses, by the predictions of some of the ``rows``.
@@ -133,26 +142,29 @@ class _Beside(NamedTuple):
         ``size`` (m,) and ``length`` (m,) are those of what the formula misses.
         """
         there, inside = self.there[rows], self.inside[rows]
-        size, length = np.broadcast_to(size, len(rows)), np.broadcast_to(length, len(rows))
-
-        def alike(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-            each = (-1, *[1] * (max(a.ndim, b.ndim) - 2))
-            d = math.sqrt(5.0) * np.sqrt(np.sum((a - b) ** 2, axis=-1)) / length.reshape(each)
-            return np.asarray(size.reshape(each) ** 2 * (1.0 + d + d**2 / 3.0) * np.exp(-d))
-
-        at, beside = self.place[rows], self.place[there]
-        across = alike(at[:, None, :], beside) * inside
-        among = alike(beside[:, :, None, :], beside[:, None, :, :]) * (
-            inside[:, :, None] & inside[:, None, :]
-        )
-        places = np.arange(there.shape[1])
-        among[:, places, places] = np.where(inside, size[:, None] ** 2 + self.noise[there] ** 2, 1.0)
+        size, length = (np.broadcast_to(x, len(rows))[:, None] for x in (size, length))
+        across = _alike(self.across[rows], size, length) * inside
+        among = _alike(self.among[rows], size[:, :, None], length[:, :, None])
+        among *= inside[:, :, None] & inside[:, None, :]
+        own = np.arange(there.shape[1])
+        among[:, own, own] = np.where(inside, size**2 + self.noise[there] ** 2, 1.0)
         weights = np.linalg.solve(among, across[:, :, None])[:, :, 0]
         error = self.residual[rows] - np.sum(weights * self.residual[there] * inside, axis=1)
-        variance = size**2 + self.noise[rows] ** 2 - np.sum(weights * across, axis=1)
+        variance = size[:, 0] ** 2 + self.noise[rows] ** 2 - np.sum(weights * across, axis=1)
         return error, np.sqrt(variance)
 
     def _log_likelihood(self, rows: np.ndarray, size: float, length: float) -> np.ndarray:
         """Log likelihood (m,) of the predictions of some rows, with tails so heavy that outliers do not count."""
         error, u = self.predicted(rows, size, length)
         return np.asarray(-np.log(u) - constants.TAILS_OF_A_MISS * np.log1p((error / u) ** 2 / 3.0))
+
+
+def _distances(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Distances of places, whose d conditions are on the last axis."""
+    return np.asarray(np.sqrt(np.sum((a - b) ** 2, axis=-1)))
+
+
+def _alike(distance: np.ndarray, size: np.ndarray, length: np.ndarray) -> np.ndarray:
+    """Matern covariance of order 5/2 over a distance."""
+    d = math.sqrt(5.0) * distance / length
+    return np.asarray(size**2 * (1.0 + d + d**2 / 3.0) * np.exp(-d))
