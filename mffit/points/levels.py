@@ -35,6 +35,8 @@ SIDESLIP = LevelKind("sideslip", STRAIGHT.rad)  # [rad]
 SLIP = LevelKind("longitudinal slip", constants.SLIP)  # [-]
 KINDS = {kind.name: kind for kind in (LOAD, CAMBER, PRESSURE, SPEED, SIDESLIP, SLIP)}
 """Kinds of levels by the word of the quantity in :mod:`mffit.quantities`."""
+SETTINGS = (("Fz", "Fz_N", LOAD), ("gamma", "gamma_deg", CAMBER), ("p", "p_kPa", PRESSURE))
+"""Fields of the settings that label sweeps, their columns and kinds of levels."""
 
 NO_LEVEL = -1
 """Label of a value outside all levels."""

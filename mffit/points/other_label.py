@@ -18,7 +18,7 @@ from mffit.points.points import Points, of_si
 from mffit.quantities import CONDITIONS
 from mffit.scatter import ALARM, rms
 
-LABELS = {"Fz": ("Fz_N", levels.LOAD), "p": ("p_kPa", levels.PRESSURE), "gamma": ("gamma_deg", levels.CAMBER)}
+LABELS = {setting: (column, kind) for setting, column, kind in levels.SETTINGS}
 """By setting, its column and its levels."""
 
 

@@ -13,7 +13,7 @@ from mffit.points.points import Points
 from mffit.quantities import CONDITIONS
 from mffit.scatter import ALARM, rms
 
-SETTINGS = (("Fz", levels.LOAD), ("gamma", levels.CAMBER), ("p", levels.PRESSURE), ("V", levels.SPEED))
+SETTINGS = (*((setting, kind) for setting, _, kind in levels.SETTINGS), ("V", levels.SPEED))
 
 
 class Unlike(NamedTuple):

@@ -43,14 +43,6 @@ def _sweeps(points: Points) -> Iterator[Group]:
         yield Group(name=points.sweep_names[k], file=file, index=index, whole=True)
 
 
-SETTINGS = (
-    ("Fz", "Fz_N", levels.LOAD),
-    ("gamma", "gamma_deg", levels.CAMBER),
-    ("p", "p_kPa", levels.PRESSURE),
-)
-"""Fields of the settings that a test plan repeats, their columns and the tolerances of their levels."""
-
-
 def confirmed_by_others(part: Points, others: Points, columns: Collection[str] = ()) -> bool:
     """Whether other points were measured at the load, at the camber to either side and at the pressure of a sweep, or at some
     of these, by their ``columns``.
@@ -58,7 +50,7 @@ def confirmed_by_others(part: Points, others: Points, columns: Collection[str] =
     If not, only the formula joins them, and how a tyre goes between two loads, cambers or pressures is no law; but between the
     outer ones of several levels the readings show it.
     """
-    for name, column, kind in SETTINGS:
+    for name, column, kind in levels.SETTINGS:
         if columns and column not in columns:
             continue
         own, known = (np.abs(getattr(of, name)) for of in (part, others))

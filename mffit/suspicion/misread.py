@@ -12,16 +12,13 @@ from functools import partial
 import numpy as np
 
 from mffit.points import Points, levels
+from mffit.points.points import of_si
 from mffit.quantities import CONDITIONS, SIDEWAYS
 from mffit.rig import Simulation
 from mffit.scatter import robust, usual_size
 from mffit.suspicion import constants
-from mffit.suspicion.groups import SETTINGS
 from mffit.suspicion.rereadings import MISTAKES, Away, ExplainingMistake, Mistake, explaining
 from mffit.suspicion.rule import Outcome, When, rule
-
-TO_COLUMN = {"Fz": 1.0, "gamma": float(np.degrees(1.0)), "p": 1e-3}
-"""Factors from SI to the unit of the column."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +118,7 @@ def _named(part: Points, best: ExplainingMistake, before: float) -> Misread:
 def _candidates(part: Points, points: Points, signs: Mapping[str, float]) -> Iterator[tuple[Mistake, Points]]:
     """Known mistakes and wrong labels, each with the points of a sweep corrected for it."""
     others = points.select(points.sweep != part.sweep[0])
-    wrong_labels = (_wrong_labels(part, points, signs, *label) for label in SETTINGS)
+    wrong_labels = (_wrong_labels(part, points, signs, *label) for label in levels.SETTINGS)
     for mistake in (*(m for m in MISTAKES if m.beyond_doubt), *(m for some in wrong_labels for m in some)):
         undone = mistake.undone(part, signs)
         if mistake.certain(undone, others, by_formula=False):
@@ -132,7 +129,7 @@ def _confirmed_labels(
     part: Points, points: Points, signs: Mapping[str, float], others: Sequence[Points]
 ) -> Iterator[tuple[Mistake, Points]]:
     """Wrong labels of those conditions of a sweep at or around which ``others`` confirm the model, with the corrected points."""
-    for label in SETTINGS:
+    for label in levels.SETTINGS:
         channel, _, kind = label
         here = _held(part, channel)
         alike = [_held(other, channel) for other in others if _differ_only_in(part, other, channel)]
@@ -160,7 +157,7 @@ def _differ_only_in(part: Points, other: Points, channel: str) -> bool:
         return False
     return all(
         abs(_held(part, name) - _held(other, name)) <= _near(kind, _held(part, name))
-        for name, _, kind in SETTINGS
+        for name, _, kind in levels.SETTINGS
         if name != channel
     )
 
@@ -181,7 +178,7 @@ def _wrong_labels(
     for level in np.unique(np.round(levels.level_values(getattr(points, channel), kind), 9)):
         if abs(level - here) > _near(kind, here):
             word, _, unit = CONDITIONS[column][:3]
-            size = signs.get(channel, 1.0) * level * TO_COLUMN[channel]
+            size = signs.get(channel, 1.0) * level * of_si(column)
             run = f"{abs(size) if channel == 'Fz' else size:.4g} {unit}"
             yield Mistake(
                 looks=f"run at a {word} of {run}",

@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 
 from mffit.constants import EXPLAINED_SHARE
-from mffit.points import Points
+from mffit.points import Points, levels
 from mffit.quantities import CHANNELS
 from mffit.quantities import column as heading
 from mffit.rig import Simulation
 from mffit.rig_errors import BY_NAME
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import constants
-from mffit.suspicion.groups import SETTINGS, confirmed_by_others
+from mffit.suspicion.groups import confirmed_by_others
 from mffit.sweeps.units import factor
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class Mistake:
         readings, and so can any but a large factor ``by_formula``, which is only fitted to them. A wrong setting is certain if
         others confirm the true one.
         """
-        if self.factor > 1.0 and any(self.column == column for _, column, _ in SETTINGS):
+        if self.factor > 1.0 and any(self.column == column for _, column, _ in levels.SETTINGS):
             return confirmed_by_others(undone, others, {self.column})
         if self.factor > constants.LARGEST_ERROR_OF_FORMULA or (self.factor == 1.0 and not by_formula):
             return True
