@@ -39,6 +39,7 @@ RADII = (
 
 @rule(
     id="named-tyres",
+    of_all=True,
     sentence="names {n} tyres, {names}, and a property file describes one; make a project of each: {cure}",
 )
 def named_tyres(points: Points, config: Config) -> Iterator[Finding]:

@@ -61,6 +61,9 @@ class Rule:
     outcome: Outcome = Outcome.REFUSED
     sentence: str  #: template, filled with the facts of a finding
     find: Find
+    of_all: bool = (
+        False  #: before the fit, whether points count that are otherwise not judged, such as driven ones
+    )
 
     def said(self, facts: Mapping[str, Any]) -> str:
         """The sentence about one finding."""

@@ -80,7 +80,7 @@ def before_the_fit(points: Points, config: Config) -> tuple[str, ...]:
         for rule in RULES:
             if rule.when is not When.BEFORE or rule.outcome is Outcome.CONTRADICTION:
                 continue
-            for finding in rule.find(points if rule is other_tyre.named_tyres else judged, config):
+            for finding in rule.find(points if rule.of_all else judged, config):
                 if rule.outcome is Outcome.REFUSED:
                     raise rule.refusal(finding)
                 warnings.append(rule.said(finding.facts))
