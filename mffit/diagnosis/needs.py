@@ -12,7 +12,8 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.notes import NotVisible
 from mffit.effects import OF_CHANNEL, Effect
 from mffit.points import Points, levels
-from mffit.rig import Simulation, distance_km, sense
+from mffit.points.clock import sense
+from mffit.rig import Simulation, distance_km
 from mffit.rig_errors import T_REF
 
 

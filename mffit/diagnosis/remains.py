@@ -317,9 +317,8 @@ def _log_chance(square: float, n: int) -> float:
     chance, half = float(chdtrc(n, square)), 0.5 * square
     if chance > 0.0:
         return math.log(chance)
-    return (
-        (0.5 * n - 1.0) * math.log(half) - half - math.lgamma(0.5 * n)
-    )  # the leading term, exact to n / square
+    # the leading term, exact to n / square
+    return (0.5 * n - 1.0) * math.log(half) - half - math.lgamma(0.5 * n)
 
 
 def _sigma(log_chance: float) -> float:

@@ -103,7 +103,7 @@ def left_by(
     free = fitted.problem.starting_here(fitted.numbers)
     numbers = [uncertain(n) for n in free if error_of(n.name) or n.name not in fitted.at_bound]
     problem = of or fitted.problem
-    # What the readings tell of asymmetries beside the model error narrows them, though their values stay.
+    # Asymmetries keep the values at which they are held, but the readings narrow their uncertainty.
     beside = problem.points.one_sided
     numbers += [
         Uncertain(name, 0.0, u, held=not (beside and is_asymmetry(name)))

@@ -47,7 +47,7 @@ USUAL_RATIO = Real(
 WIDER_THAN_THE_FIT = Real(
     10.0,
     "-",
-    "Variance of a coefficient with model error, over that of the fit, which knows nothing of this.",
+    "Variance of a coefficient where there is model error, over that of the fit, which assumes none.",
 )
 CERTAIN_EVIDENCE = Real(
     12.5,

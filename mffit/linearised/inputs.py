@@ -43,9 +43,8 @@ class Input:
     spacing: float  #: distance of neighbouring settings, the shortest length scale
     averaged: tuple[float, ...] = ()
     """Values over which a prediction averages if it does not state the condition; empty if predictions always state it."""
-    mirrored: bool = (
-        False  #: whether the mirror images of the readings count as tested, which have the other sign of it
-    )
+    mirrored: bool = False
+    """Whether the mirror images of the readings, which have the other sign of it, count as tested."""
 
     @property
     def width(self) -> float:

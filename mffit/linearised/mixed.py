@@ -105,9 +105,8 @@ class Mixed(ReadOnlyArrays):
         through = half @ halfway
         m = len(size)
         flat = halfway.reshape(-1, m)
-        information = w * sums.common - w * w * (
-            flat.T @ flat
-        )  # a product with its own transpose is half the work
+        square = flat.T @ flat  # a product with its own transpose is half the work
+        information = w * sums.common - w * w * square
         pull = w * sums.pull - w * w * sums.own_pull.ravel() @ through.reshape(-1, m)
         whole = size[:, None] * information * size
         factor = _factor(whole, ROUNDING * float(np.max(w * np.diag(sums.common) * size**2, initial=0.0)))

@@ -32,8 +32,6 @@ WITH_UNIT = re.compile(r"(.+?)(?:\s*[/,_]\s*|\s+in\s+)([^_,\s]+)")
 OF_SLIP = re.compile(r"slip|schlupf", re.IGNORECASE)
 OF_ANGLE = re.compile(r"angle|winkel|side|lat|quer|schr[äa]g", re.IGNORECASE)
 
-"""Characters that headings spell in several ways, and one spelling for each."""
-
 
 ABOUT_LETTERS = {
     "C": "turned with the wheel carrier, about the wheel centre",

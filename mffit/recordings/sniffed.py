@@ -264,13 +264,13 @@ def reversible(points: Points, declared: str, *, load_falls: bool) -> tuple[tupl
     found = []
     for name in REVERSIBLE:
         field = name.partition("_")[0]
-        if field == "Fz":  # a load in ISO-W is positive either way; its sign decides which axes are possible
-            turned, falls = points, False
+        if field != "Fz":
+            turned = points.replace(**{field: -getattr(points, field)})
+            agreeing, _ = axes_of(turned, declared, load_falls=load_falls)
+        elif load_falls:  # a load in ISO-W is positive either way; its sign decides which axes are possible
+            agreeing, _ = axes_of(points, declared, load_falls=False)
         else:
-            turned, falls = points.replace(**{field: -getattr(points, field)}), load_falls
-        if field == "Fz" and not load_falls:
             continue
-        agreeing, _ = axes_of(turned, declared, load_falls=falls)
         found += [(name, axes) for axes in sorted(agreeing, key=list(FLIPPED).index)[:1]]
     return tuple(found)
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.points import Points, main_path
-from mffit.points.clock import sense as sense
+from mffit.points.clock import sense
 from mffit.rig import constants
 
 

@@ -18,6 +18,7 @@ SPECIMEN = frozenset({
 })  # fmt: skip
 """Headings, as :func:`simplified`, of columns that name the tyre."""
 SPELLINGS = str.maketrans({" ": "_", "-": "_", "ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
+"""Characters that headings spell in several ways, and one spelling for each."""
 SECTION_IN_TITLE = re.compile(r"\[[^\]]*\]")
 """The heading of a section in a text file, ``[DATA]``."""
 

@@ -20,7 +20,7 @@ NEEDS: Mapping[str, frozenset[str]] = {
     "camber": frozenset({"camber", "coupled"}),
     "pressure": frozenset({"pressures", "pressure_loads"}),
     "longitudinal slip": frozenset({"kappa", "combined", "side_force"}),
-    "sideslip": frozenset({"sideslips", "side"}),
+    "sideslip": frozenset({"sideslips"}),
 }
 """By setting, the needs of the coefficients that it determines; sideslip those that need nothing else."""
 

@@ -13,7 +13,8 @@ from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, LEAST_SHARE_OF_A_SENSE, UP
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber
 from mffit.points import Points, levels
-from mffit.rig import distance_km, sense
+from mffit.points.clock import sense
+from mffit.rig import distance_km
 from mffit.rig_errors import BY_NAME, OF_RUN, number_of
 from mffit.suspicion import parts_of_sweeps
 

@@ -28,7 +28,7 @@ class NuisanceFit:
     full: Fitted  #: fit with every modelled influence
     choice: NuisanceChoice
     plan: FitPlan  #: of the free and the held numbers, but for the influences
-    left: LinearisedFit | None = None  #: linear model of the first fit's residuals, if computed
+    left: LinearisedFit | None = None  #: linear model of the residuals of a similar fit, if computed
 
     @property
     def at_temperature(self) -> bool:
