@@ -107,14 +107,18 @@ DIRECT = {
     "alpha_M": QuantityName("misalignment plus ply-steer", "α_M", "rad", "from zeros both ways"),
     "misalignment": QuantityName("sideslip misalignment", "α_0", "rad", "part of alpha_M, by usual sizes"),
     "ply_steer": QuantityName("ply-steer", "α_ply", "rad", "part of alpha_M, by usual sizes"),
+    "mu_y": QuantityName("peak side force per load", "μ_y", "-", "on a straight path"),
+    "M_zmax": QuantityName("peak of self-aligning moment", "M_zmax", "Nm", "on a straight path"),
 }  # fmt: skip
-"""Results of the direct method, by the attribute of its records, in the order of terminal, page and files."""
+"""Results that users come for, by the attribute of their records, in the order of terminal, page and files."""
+ON_ROAD = ("mu_y", "M_zmax")
+"""Of these, results of the fit; the others are results of the direct method."""
 KEYS = {
     name: name if quantity.unit == "-" else f"{name}_{quantity.unit.replace('/', '_per_')}"
     for name, quantity in DIRECT.items()
-    if quantity.unit != "rad"
+    if quantity.unit != "rad" and name not in ON_ROAD
 }
-"""Keys in property files and JSON of the results that are stated in the unit of the table: all but angles, by their name."""
+"""Keys in property files and JSON of the results of the direct method, by name; of all but angles, which are stated in deg."""
 CHARACTERISTICS = {
     "epsilon_gamma": DIRECT["epsilon_gamma"],
     "C_alpha_N_per_rad": DIRECT["C_alpha"],
@@ -123,8 +127,8 @@ CHARACTERISTICS = {
     "C_phit_Nm": DIRECT["C_phit"],
     "K_xk_N": QuantityName("slip stiffness", "K_xκ", "N"),
     "mu_x": QuantityName("peak longitudinal force per load", "μ_x", "-"),
-    "mu_y": QuantityName("peak side force per load", "μ_y", "-"),
-    "Mz_peak_Nm": QuantityName("peak of self-aligning moment", "M_zmax", "Nm"),
+    "mu_y": DIRECT["mu_y"],
+    "Mz_peak_Nm": DIRECT["M_zmax"],
     "trail_m": QuantityName("pneumatic trail at zero slip", "t_0", "m"),
     "r_e_m": DIRECT["r_e"],
 }

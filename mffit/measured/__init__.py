@@ -1,6 +1,7 @@
 """The direct method: alignment, radii, stiffnesses, turn-slip force and eps_gamma from the data without a model, with budgets."""
 
 from mffit.measured.alignment import align
+from mffit.measured.camber_reduction import camber_of_no_spin
 from mffit.measured.direct import adding_to_camber, at_the_axis, measure
 from mffit.measured.evidence import odd_alpha
 from mffit.measured.one_way import OneWayLag
@@ -30,6 +31,7 @@ __all__ = [
     "adding_to_camber",
     "align",
     "at_the_axis",
+    "camber_of_no_spin",
     "measure",
     "measured_path_radius",
     "odd_alpha",

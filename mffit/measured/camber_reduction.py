@@ -6,6 +6,7 @@ R, which enters both r_e and C_phit.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -79,3 +80,12 @@ def true_camber_stiffness(C_gamma: UFloat, errors: Mapping[str, UFloat], at: AtZ
 def camber_reduction(C_phit: UFloat, C_gamma: UFloat, r_e: UFloat) -> UFloat:
     """eps_gamma = 1 + r_e C_gamma / C_phit, (17) in ISO signs: C_phit > 0 [Nm], C_gamma < 0 [N/rad], r_e [m]."""
     return 1.0 + r_e * C_gamma / C_phit
+
+
+def camber_of_no_spin(phi_t: float, r_e: float, epsilon: float) -> float | None:
+    """The camber [rad] that takes the spin of a path of curvature ``phi_t`` [1/m]; None if no camber does.
+
+    The total spin phi_t - (1 - eps_gamma) sin(gamma) / r_e is zero there: the wheel rolls as on a straight road, but leaned.
+    """
+    sine = phi_t * r_e / (1.0 - epsilon) if epsilon < 1.0 else math.inf
+    return math.asin(sine) if abs(sine) < 1.0 else None

@@ -19,7 +19,6 @@ from mffit.fit import name_at_temperature
 from mffit.numbers import Numbers, to_json
 from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of
-from mffit.pipeline.provenance import TEMPERATURE
 from mffit.points import Points
 from mffit.points.stretch import StretchNote, stretch_table
 from mffit.quantities import COMPARED, column
@@ -54,14 +53,11 @@ def write_build(
         as_json.write(folder / "result.json", result)
         _write_information(folder / "information.json", result)
         write_csv(points_table(result), folder / "points.csv")
-        fitted = result.files[result.fitted]
-        if result.prediction is not None:
-            known, of_fit, warm = result.prediction, fitted, result.fit.temperature
-            # The file at temperature holds the fitted model where the plain file does.
-            if warm is not None and fitted == result.tir_path:
-                known, of_fit = warm.prediction, result.files[TEMPERATURE]
-            prediction.write(folder / prediction.FILE, known, result.tir_path, of_fit)
+        known, use = result.predicting
+        if known is not None:
+            prediction.write(folder / prediction.FILE, known, result.tir_path, result.files[use])
         if result.correction is not None:
+            fitted = result.files[result.fitted]
             prediction.write_correction(folder / result.correction_name, result.correction, fitted)
         if stretches:
             write_csv(stretch_table(stretches), folder / "stretches.csv")

@@ -25,7 +25,8 @@ from mffit.pipeline.inputs import base_notes, base_warnings, input_hashes, input
 from mffit.pipeline.judging import judged
 from mffit.pipeline.left_out import left_out_by_fit
 from mffit.pipeline.measuring import measure, said
-from mffit.pipeline.provenance import TEMPERATURE, Annotate, annotator
+from mffit.pipeline.on_road import on_road
+from mffit.pipeline.provenance import Annotate, annotator
 from mffit.pipeline.refining import fit_and_measure
 from mffit.points import Points
 from mffit.points.loading import Reading
@@ -37,7 +38,7 @@ from mffit.prediction import (
     missed_sentence,
 )
 from mffit.progress import JUDGING, MEASURING, READING, WRITING, Progress, silent
-from mffit.results import CORRECTION, BuildResult
+from mffit.results import CORRECTION, TEMPERATURE, BuildResult
 from tir import Tyre
 
 
@@ -84,6 +85,7 @@ def build(
         if ensemble:
             progress(f"drawing {ensemble} tyres from the posterior")
         result = _result(read, parts, measured, fitted, ensemble)
+        result = replace(result, road=on_road(result))
     result = replace(result, seconds=time.perf_counter() - began)
     if out is not None:
         progress(f"{WRITING} {'report' if with_report else 'files'}")

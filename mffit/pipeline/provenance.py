@@ -20,6 +20,7 @@ from mffit.made import Made
 from mffit.measured import Measured
 from mffit.pipeline.inputs import input_hashes
 from mffit.quantities import DIRECT, KEYS
+from mffit.results import TEMPERATURE
 from mffit.rig_errors import T_REF, error_of, unit_of
 from mffit.suspicion import Trust
 from tir import Tyre
@@ -40,8 +41,6 @@ PATHS = "path curvature"
 """Key of the path curvatures that were run, for which a property file has no range."""
 DIGITS = 16
 """Digits of a hash in a property file, whose lines are to be short; result.json has all 64."""
-TEMPERATURE = "temperature"
-"""Key of the file that holds at one temperature, among the uses of the others."""
 TURN_SLIP = {"turn-slip": "on", "normal": "off", "both": "on or off"}
 """Setting of the simulation's turn slip for each use of a file."""
 PLAIN = " /\\!#$&'()+,;=@[]{}~"

@@ -4,13 +4,15 @@ from mffit.prediction.conditions import write_table
 from mffit.prediction.correction import CorrectionTable, correction, write_correction
 from mffit.prediction.predictor import Predictor, predictor
 from mffit.prediction.region import MissedAtReadings, missed_at_readings
+from mffit.prediction.road import OnRoad, road_of
 from mffit.prediction.stored import FILE, load, predict, write
-from mffit.prediction.wording import missed_sentence
+from mffit.prediction.wording import missed_sentence, road_sentences
 
 __all__ = [
     "FILE",
     "CorrectionTable",
     "MissedAtReadings",
+    "OnRoad",
     "Predictor",
     "correction",
     "load",
@@ -18,6 +20,8 @@ __all__ = [
     "missed_sentence",
     "predict",
     "predictor",
+    "road_of",
+    "road_sentences",
     "write",
     "write_correction",
     "write_table",

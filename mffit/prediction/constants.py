@@ -15,3 +15,8 @@ MOST_NODES = Count(
 LARGE_FORCE = Real(
     0.9, "-", "Force over the largest of its sweep from which it counts as grip, where the curve is flat."
 )
+USUAL_SHARE = Real(
+    0.5,
+    "-",
+    "Sideslip and camber, over the largest tested ones, at which the road's numbers are stated: a tyre in fast use.",
+)

@@ -53,15 +53,25 @@ class MissedChannel(ReadOnlyArrays):
         d), ``of_tyre`` (k,) is the mask of the coefficients.
         """
         likeness, functions = self._functions(settings)
-        of_functions, of_numbers = np.split(self.root, [len(self.missed)])
-        missed = functions @ of_functions
-        mean, reading = (np.sum((missed + by @ of_numbers) ** 2, axis=1) for by in (slopes * of_tyre, slopes))
+        mean, reading = (np.sum(self._rows(functions, by) ** 2, axis=1) for by in (slopes * of_tyre, slopes))
         unlike = (1.0 - likeness**2) * self.components.missed**2
         return functions @ self.missed, mean + unlike, reading + unlike
 
     def mean(self, settings: np.ndarray) -> np.ndarray:
         """The model error (n,) alone, as in :meth:`at`."""
         return np.asarray(self._functions(settings)[1] @ self.missed)
+
+    def u_between(self, settings: np.ndarray, slopes: np.ndarray) -> float:
+        """Standard uncertainty of the force's difference between two conditions; ``settings`` and ``slopes`` as in :meth:`at`."""
+        likeness, functions = self._functions(settings)
+        one, other = self._rows(functions, slopes)
+        unlike = np.sum(1.0 - likeness**2) * self.components.missed**2
+        return float(np.sqrt(np.sum((one - other) ** 2) + unlike))
+
+    def _rows(self, functions: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+        """Root (n, r) of the covariance of the forces at conditions with these ``functions`` (n, m) and ``slopes`` (n, k)."""
+        of_functions, of_numbers = np.split(self.root, [len(self.missed)])
+        return np.asarray(functions @ of_functions + slopes @ of_numbers)
 
     def _functions(self, settings: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Correlation (n,) with the model error at the nearest tested conditions, and the functions (n, m) times it."""
@@ -167,6 +177,26 @@ class Predictor:
             found[name] = PredictedForce(plain[name], best, variance, of_run)
         return found
 
+    def u_between(self, fitted: Tyre, conditions: pd.DataFrame, channel: str) -> float:
+        """Standard uncertainty of the difference of the tyre's mean force between two conditions, [unit of the channel].
+
+        Conditions that are not stated are those in the middle of their values.
+        """
+        points, own = self.points(fitted, conditions), self.channels[channel]
+        if self.T_range is not None:
+            points = points.replace(
+                T=np.where(np.isfinite(points.T), points.T, np.mean(self._usual_temperatures()))
+            )
+        model = Simulation.of(fitted, turn_slip=self.curved).with_numbers(self.beside)
+        slopes = model.sensitivities(points, self.names, [channel])[1][channel] * self._of_tyre
+        middle = np.mean([*_settings(points, own.smooth.inputs)], axis=0)
+        return own.u_between(middle, slopes)
+
+    @property
+    def _of_tyre(self) -> np.ndarray:
+        """Mask (k,) of the numbers that are the tyre's."""
+        return np.array([error_of(name) is None for name in self.names])
+
     def band(
         self, file: Simulation, fitted: Simulation, points: Points, channels: Iterable[str] | None = None
     ) -> Readings:
@@ -213,9 +243,9 @@ class Predictor:
 
         The variance of a reading includes the scatter over the conditions that are not stated.
         """
-        of_tyre = np.array([error_of(n) is None for n in self.names])
         found = [
-            channel.at(settings, slopes, of_tyre) for settings in _settings(points, channel.smooth.inputs)
+            channel.at(settings, slopes, self._of_tyre)
+            for settings in _settings(points, channel.smooth.inputs)
         ]
         means, variances, readings = (np.array(own) for own in zip(*found, strict=True))
         return means.mean(axis=0), variances.mean(axis=0), readings.mean(axis=0) + means.var(axis=0)

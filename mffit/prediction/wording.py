@@ -1,8 +1,11 @@
-"""The sentence about the model error of a channel."""
+"""The sentences about the model error of a channel and about the road."""
 
 from __future__ import annotations
 
+import math
+
 from mffit.prediction.region import MissedAtReadings, MissedRegion
+from mffit.prediction.road import OnRoad
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.rounding import ascii_only, number
 from tir.errors import listed
@@ -33,6 +36,24 @@ def missed_sentence(found: MissedAtReadings, rival: str = "") -> str:
         f"what limits {name} is {limits}: alike in all sweeps it misses {found.size:.3g} {unit} rms, "
         f"{100.0 * found.size / found.largest:.1f} % of the largest {name}{where}"
     )
+
+
+def road_sentences(road: OnRoad, normal: str = "") -> list[str]:
+    """How far the file for turn slip off, called ``normal``, is from the road, and what would make the road better known."""
+    sentences = []
+    if road.missed:
+        posture, missed = [*road.missed.items()][-1]
+        off = [
+            f"{number(one.rms, digits=2)} {CHANNELS[name].unit} ({number(100.0 * one.share, digits=2)} % of the peak)"
+            for name, one in missed.items()
+        ]
+        lean = (
+            f" by {number(math.degrees(road.curves[posture].camber), 0)} deg" if posture == "leaned" else ""
+        )
+        sentences.append(f"{normal} misses the road by {listed(off)} rms when {posture}{lean}.")
+    if road.better:
+        sentences.append(f"The road would be better known by {', or '.join(road.better)}.")
+    return [ascii_only(sentence) for sentence in sentences]
 
 
 def _most(found: MissedAtReadings, region: MissedRegion) -> str:

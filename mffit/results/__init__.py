@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from mffit.on_demand import on_demand
 
 if TYPE_CHECKING:
-    from mffit.results.records import CORRECTION, BuildOutcome, BuildResult
+    from mffit.results.records import CORRECTION, TEMPERATURE, BuildOutcome, BuildResult
 
-__all__ = ["CORRECTION", "BuildOutcome", "BuildResult"]
+__all__ = ["CORRECTION", "TEMPERATURE", "BuildOutcome", "BuildResult"]
 __getattr__ = on_demand(__name__)

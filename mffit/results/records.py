@@ -18,12 +18,14 @@ from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.points.left_out import LeftOut
-from mffit.prediction import CorrectionTable, MissedAtReadings, Predictor, missed_sentence
+from mffit.prediction import CorrectionTable, MissedAtReadings, OnRoad, Predictor, missed_sentence
 from mffit.suspicion import SOUND, Trust
 from tir import Quantity, Tyre
 
 CORRECTION = "-correction.csv"
 """End of the file name of the table of model error."""
+TEMPERATURE = "temperature"
+"""Key of the file that holds at one temperature, among the uses of the others."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -51,6 +53,7 @@ class BuildResult(Brief):
     """Model error at the readings, by channel, where it is proven."""
     correction: CorrectionTable | None = None  #: table of the model error, where it is proven
     excluded: Points | None = None  #: finished points excluded by hand; None without any
+    road: OnRoad | None = None  #: the tyre on a straight path; None if no sideslip was tested
 
     @property
     def headline(self) -> str:
@@ -88,6 +91,17 @@ class BuildResult(Brief):
         return fitted_use(self.files)
 
     @property
+    def predicting(self) -> tuple[Predictor | None, str]:
+        """The predictor for any conditions, and the use of the file of its fitted model.
+
+        Where temperature is modelled and the plain file is the fitted model, the file at one temperature has that role.
+        """
+        warm = self.fit.temperature
+        if warm is not None and self.files[self.fitted] == self.tir_path:
+            return warm.prediction, TEMPERATURE
+        return self.prediction, self.fitted
+
+    @property
     def correction_name(self) -> str:
         """File name of the table of model error."""
         return f"{self.config.tyre.name}{CORRECTION}"
@@ -100,7 +114,7 @@ class BuildResult(Brief):
 
 keys(
     BuildResult,
-    "trusted reasons in_doubt=trust.doubts tyre=config.tyre spin=measured fit residuals remarks=trust.remarks "
+    "trusted reasons in_doubt=trust.doubts road tyre=config.tyre spin=measured fit residuals remarks=trust.remarks "
     "tir=tir_path files made lab=config.lab left_out warnings doubts=fit.doubts outliers=fit.outliers",
     fit=lambda found: _fit(found.fit, found.trust.over_noise),
     residuals=lambda found: _residuals(found.remains, found.missed),

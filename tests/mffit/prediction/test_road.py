@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from brush import Brush
-from conftest import DISC, build, disc_of_a_brush
+from conftest import DISC, brush, build, disc_of_a_brush
 
+import tir
 from mffit.fit.coverage import UNSEEN
+from mffit.measured import camber_of_no_spin
+from mffit.rounding import AtLeast
 from mffit.scatter import rms
 
 ODD = {"PEY3", "PHY1", "PHY2", "PVY1", "PVY2", "QBZ4", "QDZ3", "QDZ6", "QDZ7", "QEZ4", "QHZ1", "QHZ2"}
@@ -68,3 +73,87 @@ def test_without_a_path_the_prediction_is_on_that_of_the_readings(built):
 def test_beyond_the_curvature_of_the_disc_the_interval_grows(built):
     halves = [rms(errors(built, phi_t)[1]) for phi_t in (-1.0 / DISC, -2.0 / DISC, -4.0 / DISC)]
     assert halves[0] < halves[1] < halves[2]
+
+
+def test_the_road_of_a_build_is_that_of_predict(built):
+    """Values and uncertainties: there is one estimate."""
+    road = built.result.road
+    for curve in road.curves.values():
+        found = built.predict(
+            alpha_deg=np.degrees(curve.sideslip),
+            gamma_deg=np.degrees(curve.camber),
+            Fz_N=road.load,
+            p_kPa=road.pressure / 1e3,
+            phi_t_per_m=0.0,
+        )
+        for name, heading in (("Fy", "Fy_best_N"), ("Mz", "Mz_best_Nm")):
+            assert curve.best[name] == pytest.approx(found[heading].to_numpy(), rel=1e-4, abs=1e-3)
+            assert curve.u[name] == pytest.approx(found[f"u_{heading}"].to_numpy(), rel=1e-3)
+
+
+def test_the_numbers_of_the_road_hold(built):
+    """True values by the brush itself, to both sides: forces, and the grip up to the largest sideslip."""
+    road = built.result.road
+    alpha = np.radians(np.linspace(0.0, np.degrees(road.upright.sideslip[-1]), 400))
+    for side, sign in (("negative", -1.0), ("positive", 1.0)):
+        Fy, Mz = TYRE.forces(sign * alpha, 0.0 * alpha, 0.0 * alpha + road.load, phi_t=0.0)
+        at = [np.interp(road.sideslip, alpha, x) for x in (Fy, Mz)]
+        true = {
+            "Fy": at[0],
+            "Mz": at[1],
+            "mu_y": np.max(np.abs(Fy)) / road.load,
+            "M_zmax": np.max(np.abs(Mz)),
+        }
+        for name, value in true.items():
+            found = getattr(road.sides[side], name)
+            assert abs(found.value - value) < 3.0 * found.u
+            assert found.u < 0.2 * abs(value)
+
+
+def test_a_largest_force_is_a_peak_if_the_curve_falls_behind_it(built):
+    """The moment of a brush falls when it slides; its side force does not within the tested sideslip."""
+    for side in built.result.road.sides.values():
+        assert isinstance(side.mu_y, AtLeast)
+        assert not isinstance(side.M_zmax, AtLeast)
+
+
+def test_the_miss_of_the_file_for_turn_slip_off_is_that_of_the_written_file(built):
+    road = built.result.road
+    normal = tir.read(built.folder / built.result.files["normal"])
+    for posture, curve in road.curves.items():
+        forces = normal(road.load, alpha=curve.sideslip, gamma=curve.camber, p=road.pressure, turn_slip=False)
+        for name, missed in road.missed[posture].items():
+            off = rms(getattr(forces, name) - curve.best[name])
+            assert missed.rms == pytest.approx(off, rel=1e-3)
+            assert missed.share == pytest.approx(off / np.max(np.abs(road.upright.best[name])), rel=1e-3)
+
+
+def test_what_would_help_names_the_camber_without_spin(built):
+    """There, the disc and the tilted wheel turn alike: sin(gamma) / r_e (1 - eps_gamma) = -1/R."""
+    epsilon = built.result.measured.epsilon_gamma.value
+    camber = camber_of_no_spin(-1.0 / DISC, TYRE.r_e, epsilon)
+    assert (1.0 - epsilon) * np.sin(camber) / TYRE.r_e == pytest.approx(-1.0 / DISC)
+    assert any(f"{np.degrees(camber):.1f} deg" in text for text in built.result.road.better) != (
+        abs(np.degrees(camber) + 15.0) < 0.8  # it was run
+    )
+    assert any("other side" in text for text in built.result.road.better)
+    assert camber_of_no_spin(-1.0, 0.3, 0.9) is None
+
+
+def test_result_json_states_the_road(built):
+    content = json.loads((built.folder / "result.json").read_text())["road"]
+    road = built.result.road
+    assert content["sides"]["negative"]["mu_y"]["at_least"] is True
+    assert content["sides"]["positive"]["M_zmax_Nm"]["u"] == pytest.approx(road.sides["positive"].M_zmax.u)
+    assert content["curves"]["leaned"]["gamma_deg"] == pytest.approx(np.degrees(road.leaned.camber))
+    assert content["missed_by_normal"]["leaned"]["Fy"]["rms"] == pytest.approx(
+        road.missed["leaned"]["Fy"].rms
+    )
+
+
+def test_after_a_flat_belt_the_road_was_measured(foreign):
+    road = foreign.result.road
+    assert road.better == ()
+    assert road.missed == {}
+    true, _ = brush(road.upright.sideslip, 0.0, road.load)
+    assert np.mean(np.abs(road.upright.best["Fy"] - true) < 1.96 * road.upright.u["Fy"]) > 0.9
