@@ -150,7 +150,7 @@ class Answers:
         return await self._done(lambda: self.opened.session.run(request.path_params["kind"]))
 
     async def events(self, request: Request) -> Response:
-        states = _events(self.opened.session, request, self.closing)
+        states = _events(self.opened, request, self.closing)
         return StreamingResponse(states, media_type="text/event-stream")
 
     async def result(self, request: Request) -> Response:
@@ -267,11 +267,12 @@ def _values_of(given: Mapping[str, Any]) -> dict[str, Any]:
     return {"values": {name: x for name, x in tyre.values.items() if isinstance(x, float)}}
 
 
-async def _events(session: Session, request: Request, closing: Callable[[], bool]) -> AsyncIterator[str]:
-    """The state whenever it changes, as server-sent events."""
+async def _events(opened: Opened, request: Request, closing: Callable[[], bool]) -> AsyncIterator[str]:
+    """The state whenever it changes, as server-sent events; an empty one without a project."""
     seen = ""
     while not closing() and not await request.is_disconnected():
-        now = json.dumps(await run_in_threadpool(session.state))
+        state = await run_in_threadpool(opened.session.state) if opened.has_project else {}
+        now = json.dumps(state)
         if now != seen:
             seen = now
             yield f"data: {now}\n\n"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import socket
-import zlib
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from threading import Thread
@@ -20,8 +19,6 @@ if TYPE_CHECKING:
     from mffit.window.app import Opened
 
 ADDRESS = "127.0.0.1"
-FREE_PORTS = range(49_152, 65_536)
-"""Ports that no service has by convention (RFC 6335); a project has its usual one among them."""
 
 
 def open_path(
@@ -33,9 +30,9 @@ def open_path(
 ) -> None:
     """Serve a window of a ``tyre.toml``, its folder, a folder of recordings, or property files until it is interrupted.
 
-    ``port`` is on the loopback address; 0 is the usual one of this project, or any if that is in use. ``opened`` is called with
-    the address once requests are answered, and with another when that has let a browser in; ``launch`` with a file that takes a
-    browser there, for none but this user to read. Raises InputError if the port is in use, or the files cannot be read.
+    ``port`` is on the loopback address; 0 is any free one. ``opened`` is called with the address once requests are answered, and
+    with another when that has let a browser in; ``launch`` with a file that takes a browser there, for none but this user to
+    read. Raises InputError if the port is in use, or the files cannot be read.
     """
     import uvicorn
 
@@ -43,7 +40,7 @@ def open_path(
     from mffit.window.guard import Entrance
 
     shown = _opened(paths)
-    with _listening(port) if port else _usual(paths[0]) as listening:
+    with _listening(port) as listening:
         port = listening.getsockname()[1]
         said: list[str] = []
 
@@ -110,17 +107,6 @@ def _leading_to(address: str, port: int) -> Iterator[Path | None]:
         yield page
     finally:
         page.unlink(missing_ok=True)
-
-
-def _usual(path: Path) -> socket.socket:
-    """A socket on the port that a project usually has, or on a free one.
-
-    The port is the same after a restart, so that a page that is still open can follow to the new address.
-    """
-    try:
-        return _listening(FREE_PORTS[zlib.crc32(bytes(path.resolve())) % len(FREE_PORTS)])
-    except InputError:
-        return _listening(0)
 
 
 def _listening(port: int) -> socket.socket:

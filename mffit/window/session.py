@@ -210,7 +210,6 @@ class Session:
             problem, config = self._read(now)
             self._look_for_recordings()
             return {
-                "project": digest_of(bytes(self.file.path)),
                 "digest": now,
                 "is_fitted": self._fitted == now and config is not None and self._is_of(config),
                 "fits": self.fits,

@@ -3,16 +3,22 @@ import {byId} from "./dom.js";
 
 const PATIENCE = 3000;
 export const ENDED = "The server of this window has ended. Everything that you saved is in tyre.toml; " +
-  "run `mffit open` again, and this page follows.";
+  "close this page and run `mffit open` again.";
+// Once the server was away, it is asked nothing more: another user of this computer may listen at its port by then.
+let ended = false;
+export const hasEnded = () => ended;
 // The answer as an object, null without a server. A call is never given up: what it asks for may yet be done.
 export async function asked(address, say, given = {}) {
+  if (ended) return null;
   const late = setTimeout(() =>
     say(`No answer for ${PATIENCE / 1000} s; still waiting. Do not repeat it: it may yet be done.`, true), PATIENCE);
   try {
     const answer = await fetch(address, given);
-    return answer.status === 403 ? null : await answer.json().catch(() =>
+    ended ||= answer.status === 403;
+    return ended ? null : await answer.json().catch(() =>
       ({error: `The server answered with status ${answer.status}; see the terminal.`}));
   } catch {
+    ended = true;
     return null;
   } finally {
     clearTimeout(late);
@@ -20,6 +26,21 @@ export async function asked(address, say, given = {}) {
 }
 export const sent = body =>
   ({method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify(body)});
+// States of the server as they come, null at its end. One page of a window listens, and tells the others.
+export function listen(heard) {
+  const name = `mffit ${new URL(".", location).pathname}`, pages = new BroadcastChannel(name);
+  const hear = state => {
+    ended ||= state === null;
+    heard(ended ? null : state);
+  };
+  const tell = state => { hear(state); pages.postMessage(state); };
+  pages.onmessage = ({data}) => hear(data);
+  navigator.locks.request(name, () => ended || new Promise(() => {
+    const events = new EventSource("events");
+    events.onmessage = message => tell(JSON.parse(message.data));
+    events.onerror = () => { events.close(); tell(null); };  // or it would ask whoever is at this port next
+  }));
+}
 async function filesOf(transfer) {
   const entries = [...transfer.items].filter(item => item.kind === "file").map(item =>
     item.webkitGetAsEntry()).filter(Boolean);
@@ -59,8 +80,10 @@ export function takesRecordings(say, stored) {
     const refusals = [];
     for (const [k, file] of files.entries()) {
       say(`storing ${k + 1} of ${files.length}: ${file.name}`);
-      const found = await asked(`store/${encodeURIComponent(file.name)}`, say,
-        {method: "POST", headers: {"Content-Type": "application/octet-stream"}, body: file});
+      const body = await file.arrayBuffer().catch(() => null);
+      const found = body ? await asked(`store/${encodeURIComponent(file.name)}`, say,
+        {method: "POST", headers: {"Content-Type": "application/octet-stream"}, body})
+        : {error: `${file.name} cannot be read any more; choose it again`};
       if (!found) return say(ENDED, true);
       if (found.error) refusals.push(found.error);
     }

@@ -1,5 +1,5 @@
 // The recordings of a folder: what is recognised, corrected by hand, and the project made of them.
-import {ENDED, asked, sent, takesRecordings} from "./calls.js";
+import {ENDED, asked, listen, sent, takesRecordings} from "./calls.js";
 import {byId, element} from "./dom.js";
 
 let table = null;
@@ -211,4 +211,5 @@ byId("choice").addEventListener("submit", async event => {
   event.preventDefault();
   if (await post(does)) location.assign("./");
 });
+listen(state => { if (state === null) say(ENDED, true); });
 load();

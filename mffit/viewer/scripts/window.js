@@ -1,5 +1,5 @@
 // A local window: every click is saved in tyre.toml, and Refit runs the real fit.
-import {ENDED, asked, sent, takesRecordings} from "./calls.js";
+import {ENDED, asked, hasEnded, listen, sent, takesRecordings} from "./calls.js";
 import {cells, showRow} from "./coefficients.js";
 import {content} from "./content.js";
 import {byId, details, element, key} from "./dom.js";
@@ -9,7 +9,7 @@ import {
   begin, dropMoves, frame, moves, pointName, remember, showChosen, showProject, tryOut, update,
 } from "./project.js";
 
-let live = content.window, shownFit = content.project ? live.fits : -1, fetching = false, ended = false,
+let live = content.window, shownFit = content.project ? live.fits : -1, fetching = false,
   waiting = Promise.resolve();
 
 const say = (sentence, bad = false) => {
@@ -18,15 +18,10 @@ const say = (sentence, bad = false) => {
 };
 async function post(address, body = {}, refused = found => say(found.error, true)) {
   const found = await asked(address, say, sent(body));
-  if (!found) return lost();
+  if (!found) return showStatus();
   if (found.state) setLive(found.state);
   if (found.error) refused(found);
   return !found.error;
-}
-function lost() {
-  ended = true;
-  showStatus();
-  return false;
 }
 // One change after the other: each is meant for the file as the one before left it. A refusal is said at the place of
 // the click.
@@ -130,7 +125,7 @@ byId("other-file").addEventListener("change", async event => {
   event.target.value = "";
   if (!file || !project) return;
   const found = await asked("values", say, sent({name: file.name, text: await file.text()}));
-  if (!found) return lost();
+  if (!found) return showStatus();
   if (found.error) return say(found.error, true);
   tryOut(found.values);
   say(`Solid curves have the values of ${file.name}, dashed ones are the fit; Reset all ends it.`);
@@ -159,7 +154,6 @@ hooks.chosenActions = () => {
 
 function setLive(state) {
   live = state;
-  ended = false;
   showSettings();
   if (!live.can_undo) dropMoves(one => !one.trial);  // another program has changed the file since
   if (live.fits !== shownFit && live.fits > 0) return bring();
@@ -179,7 +173,7 @@ async function bring() {
   fetching = true;
   const wantedFit = live.fits, data = await asked("project", say);
   fetching = false;
-  if (!data || data.error) return lost();
+  if (!data || data.error) return showStatus();
   if (project && (data.turn_slip !== project.turn_slip || data.star !== project.star)) return location.reload();
   if (shownFit >= 0) {  // a new fit: what the sliders tried is over
     setTrial({});
@@ -203,12 +197,12 @@ function showNews() {
 }
 function showStatus() {
   showNews();
-  byId("refit").disabled = ended || !!live.run;
+  byId("refit").disabled = hasEnded() || !!live.run;
   byId("refit").classList.toggle("main", !live.is_fitted && !live.run);
-  byId("stop").hidden = !live.run;
+  byId("stop").hidden = hasEnded() || !live.run;
   byId("undo").disabled = !moves.length && !live.can_undo;
   showLinks();
-  if (ended) return say(ENDED, true);
+  if (hasEnded()) return say(ENDED, true);
   if (live.problem) return say(live.problem, true);
   if (live.run) return say(
     `${live.fits || live.run.kind !== "fit" ? WORDS[live.run.kind] : "First fit"}: ${live.run.sentence}`);
@@ -219,7 +213,8 @@ function showStatus() {
 }
 function showLinks() {
   const parts = [];
-  for (const page of live.pages) {
+  byId("add-recordings").hidden = hasEnded();
+  for (const page of hasEnded() ? [] : live.pages) {
     const part = document.createElement("span");
     if (page.href) {
       const link = Object.assign(document.createElement("a"),
@@ -231,7 +226,7 @@ function showLinks() {
     }
     const make = key(page.href ? "again" : `Make: ${page.title.toLowerCase()}`,
       `as mffit ${page.run} on the command line, into out/`, () => post(`run/${page.run}`));
-    make.disabled = ended || !!live.run;
+    make.disabled = !!live.run;
     part.append(make);
     parts.push(part);
   }
@@ -242,7 +237,7 @@ function showLinks() {
 let settingsOf = "";
 async function showSettings() {
   const box = byId("settings"), home = box.querySelector("div");
-  if (!box.open || ended || settingsOf === live.digest) return;
+  if (!box.open || settingsOf === live.digest) return;
   settingsOf = live.digest;
   const tables = await asked("settings", say);
   if (!Array.isArray(tables)) return;
@@ -277,36 +272,6 @@ byId("settings").addEventListener("toggle", showSettings);
 takesRecordings(say, refusals => { if (refusals.length) say(refusals.join(" "), true); else location.assign("add"); });
 byId("refit").addEventListener("click", () => post("run/fit"));
 byId("stop").addEventListener("click", () => post("stop"));
-// A server that was started again has another address: its page says so to those of the old one, which follow with
-// their view.
-const windows = new BroadcastChannel("mffit window"), here = {project: live.project, address: location.pathname};
-function heard({state = null}) {
-  if (state) return setLive(state);
-  ended = true;
-  showStatus();
-}
-windows.onmessage = ({data}) => {
-  if (data.address === here.address) return heard(data);
-  if (data.project === here.project &&
-    /^\/[\w-]+\/$/.test(data.address)) location.replace(data.address + location.hash);
-};
-windows.postMessage({...here, state: live});
-// Of all pages that are seen, one listens to the server and tells the others: a browser has six connections for all of
-// them.
-let quiet = new AbortController();
-function listen() {
-  quiet.abort();
-  const {signal} = quiet = new AbortController();
-  if (document.hidden) return;
-  asked("state", say).then(found => { if (!signal.aborted && found && !found.error) setLive(found); });
-  navigator.locks.request(`mffit ${here.address}`, {signal}, () => new Promise(done => {
-    const events = new EventSource("events"), tell = news => { heard(news); windows.postMessage({...here, ...news}); };
-    signal.addEventListener("abort", () => { events.close(); done(); });
-    events.onmessage = message => tell({state: JSON.parse(message.data)});
-    events.onerror = () => tell({});
-  })).catch(() => {});  // it was hidden before its turn
-}
-document.addEventListener("visibilitychange", listen);
-listen();
+listen(state => state ? setLive(state) : showStatus());
 showStatus();
 begin(content.project);

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import signal
@@ -12,6 +13,7 @@ import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from threading import Event, Thread
 from typing import Any
@@ -417,28 +419,6 @@ def test_a_file_leads_into_the_window_and_the_address_bar_has_no_key(browser, ty
         assert [entry["url"] for entry in shown if "/enter/" in entry["url"]] == []
 
 
-def test_a_page_follows_a_server_that_was_started_again(browser, tyre_toml, result):
-    """With its view; a page that stays open says meanwhile that the server has ended."""
-    from mffit.window.app import Opened
-
-    session = Session(tyre_toml)
-    session.data, session.fits, session._fitted = mffit.viewer.project_data(result) | {"before": None}, 1, ""
-    first = browser.current_window_handle
-    with served(Opened(session)) as address:
-        old = enter(browser, address)
-        ask(shown(browser), "mffit.move('PCY1', 1.5)")
-    until(lambda: "has ended" in browser.find_element("id", "status").text)
-    with served(Opened(session), urlsplit(address).port) as again:
-        browser.switch_to.new_window("tab")
-        new = enter(browser, again)
-        assert new != old
-        browser.close()
-        browser.switch_to.window(first)
-        until(lambda: browser.current_url.startswith(new))
-        assert ask(browser, "mffit.trial()") == {"PCY1": 1.5}
-        until(lambda: "has ended" not in browser.find_element("id", "status").text)
-
-
 def drop(browser: Any, path: Path) -> None:
     files = {"items": [], "files": [str(path)], "dragOperationsMask": 1}
     for kind in ("dragEnter", "dragOver", "drop"):
@@ -503,6 +483,62 @@ def fitted(tyre_toml: Path, result: Any) -> Any:
     return Opened(session)
 
 
+class ForeignServer(ThreadingHTTPServer):
+    """A server of somebody else that writes down what it is asked, and answers every stream with a state of its own."""
+
+    def __init__(self, port: int) -> None:
+        self.asked: list[str] = []
+        super().__init__(("127.0.0.1", port), _Foreign)
+
+
+class _Foreign(BaseHTTPRequestHandler):
+    server: ForeignServer
+
+    def do_GET(self) -> None:
+        self.server.asked.append(self.path)
+        self.send_response(200)
+        self.send_header("content-type", "text/event-stream")
+        self.end_headers()
+        state = {"fits": 99, "pages": [], "hand": {}, "exclude": [], "problem": "FOREIGN", "digest": "0"}
+        self.wfile.write(f"data: {json.dumps(state)}\n\n".encode())
+
+    do_POST = do_GET
+
+
+def test_a_server_of_somebody_else_at_the_port_is_asked_nothing(browser, tyre_toml, result):
+    """Neither by a page that is looked at, nor by one behind it, whatever is clicked there."""
+    first, had_ended = browser.current_window_handle, "has ended"
+    status = lambda: browser.find_element("id", "status").text  # noqa: E731
+    with served(fitted(tyre_toml, result)) as address:
+        home = enter(browser, address)
+        shown(browser)
+        browser.switch_to.new_window("tab")
+        browser.get(f"{home}add")
+        until(lambda: "in tyre.toml" in status())
+    foreign = ForeignServer(urlsplit(address).port)
+    thread = Thread(target=foreign.serve_forever)
+    thread.start()
+    try:
+        until(lambda: had_ended in status(), 10.0)
+        browser.execute_script("document.getElementById('check').click()")
+        browser.close()
+        browser.switch_to.window(first)
+        until(lambda: had_ended in status(), 10.0)
+        ask(browser, "mffit.move('PCY1', 1.5)")
+        press(browser, ".coefficient[data-name=PCY1] .keys button")  # hold
+        for button in ("#refit", "#undo", "#settings summary"):
+            press(browser, button)
+        time.sleep(6.0)  # a browser comes back to a stream after 3 s or so
+        assert browser.find_elements("css selector", "#links a, #add-recordings:not([hidden])") == []
+        assert had_ended in status()
+        assert foreign.asked == []
+    finally:
+        foreign.shutdown()
+        thread.join()
+        foreign.server_close()
+    assert "PCY1" not in tyre_toml.read_text(encoding="utf-8")
+
+
 def test_each_of_eight_tabs_saves(browser, tyre_toml, result):
     """All of them show what each saved; a headless browser says that all are seen, as windows side by side are."""
     first = browser.current_window_handle
@@ -514,6 +550,8 @@ def test_each_of_eight_tabs_saves(browser, tyre_toml, result):
             tabs.append(browser.current_window_handle)
         for k, tab in enumerate(tabs):
             browser.switch_to.window(tab)
+            if k:  # it shows what the tab before saved
+                until(lambda k=k: ask(browser, "mffit.data().hand.PEY1") == round(-0.49 - 0.01 * k, 2), 5.0)
             ask(browser, f"mffit.move('PEY1', {-0.5 - 0.01 * k})")
             press(browser, ".coefficient[data-name=PEY1] .keys button")
             until(lambda k=k: f"PEY1 = {-0.5 - 0.01 * k:g}" in tyre_toml.read_text(encoding="utf-8"), 10.0)

@@ -408,7 +408,7 @@ def test_events_bring_the_state_at_once(session):
     """The stream ends when the server is about to."""
     with client_of(Opened(session), closing=iter([False, True]).__next__) as client:
         text = client.get(f"{client.home}events").text
-    assert re.match(r'data: \{"project": "\w{64}", "digest": "', text)
+    assert re.match(r'data: \{"digest": "\w{64}"', text)
 
 
 def test_a_folder_that_is_not_there_is_said(tmp_path):
