@@ -12,7 +12,7 @@ import mffit
 import tir
 from mffit.effects import CATALOG, NEEDS
 from mffit.rig_errors import AFTER, BEFORE, BY_NAME, RIG_ERRORS
-from mffit.suspicion.rule import When
+from mffit.suspicion.rule import Outcome, When
 from mffit.suspicion.rules import RULES
 from mffit.templates import environment
 from tir.constant import Count, Real, Series
@@ -34,6 +34,7 @@ def page(name: str) -> str:
         without_place=[error for error in RIG_ERRORS if error.place is None],
         rules=RULES,
         occasions=When,
+        outcomes=Outcome,
         constants=dict(_constants()),
     )
 
