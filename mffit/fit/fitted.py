@@ -15,7 +15,7 @@ from mffit.least_squares import FreeNumber, solve
 from mffit.linearised import LinearisedFit, Uncertain, linearised
 from mffit.numbers import Numbers
 from mffit.rig import Simulation
-from mffit.rig_errors import error_of
+from mffit.rig_errors import ZEROS, error_of
 from tir.parameters import BY_NAME
 
 SPIN = ("PECP1", "PECP2")
@@ -53,6 +53,12 @@ class Fitted:
         errors = (error_of(name) for name in self.rig)
         references = {error.counts_from for error in errors if error is not None and error.counts_from}
         return {**self.rig, **{name: (self.problem.value(name), 0.0) for name in sorted(references)}}
+
+    @property
+    def zeros(self) -> dict[str, tuple[float, float]]:
+        """The fitted and the held zeros of the rig, with standard uncertainties."""
+        held = {name: (self.problem.value(name), u) for name, u in self.held_rig.items()}
+        return {name: row for name, row in {**held, **self.rig}.items() if error_of(name) in ZEROS}
 
     @property
     def stderr(self) -> dict[str, float]:

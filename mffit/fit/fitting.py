@@ -106,7 +106,7 @@ def fit(
     simulation = Simulation(tyre.values, turn_slip=config.rig.on_disc)
     found_rig = {name: value for name, (value, _) in fitted.rig_stated.items()}
     known_forces, with_zeros = (
-        predictor(points, left_by_file, found_rig, exact) for exact in ((), zeros_of_rig(fitted.rig))
+        predictor(points, left_by_file, found_rig, exact) for exact in ((), zeros_of_rig(fitted.zeros))
     )
     wide = bands(known_forces, fitted.held, simulation, points, with_zeros)
     modelled, others = nuisance_sentences(config.tyre.name, found, temperature, runs, channels)

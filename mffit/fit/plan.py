@@ -168,9 +168,7 @@ def fit_plan(
         channels=channels,
         extra=tuple(extra),
         held=held,
-        held_rig=held_rig(
-            config, points.used_setups, channels, unseen=unseen_of_rig, C_alpha=measured.C_alpha
-        ),
+        held_rig=held_rig(config, measured, points.used_setups, channels, unseen=unseen_of_rig),
     )
     return _by_hand(plan, known.hand)
 

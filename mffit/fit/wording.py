@@ -207,18 +207,6 @@ def zeros_of_rig_sentence(zeros: Mapping[str, tuple[float, float]], bands: Bands
     )
 
 
-def one_sided_sentence(held: Mapping[str, float]) -> str:
-    """A sentence on a sideslip zero that is held because sideslip has one sign; empty if it is not held."""
-    if "alpha_0_deg" not in held:
-        return ""
-    u = to_uncertainty(held["alpha_0_deg"], held["alpha_0_deg"])
-    return (
-        "sideslip has one sign wherever the wheel is driven or braked, or throughout, so that the zero of the sideslip axis "
-        f"cannot be told from the tyre: it is held as declared, +- {u} deg, which is in the uncertainties; a few of these "
-        "readings at the other sign of sideslip would tell it"
-    )
-
-
 def one_side_of_a_disc(held: Mapping[str, float]) -> str:
     """A sentence on asymmetries that are held because a disc was run on one side only; empty if its zeros are not held."""
     if not any(error_of(name) in ZEROS for name in held):
@@ -440,12 +428,12 @@ def remarks(
     config: Config, points: Points, fitted: Fitted, values: Mapping[str, Any], found: Bands
 ) -> list[str]:
     """Sentences on the widths of the fitted tyre's bands."""
-    zeros = zeros_of_rig(fitted.rig)
+    zeros = zeros_of_rig(fitted.zeros)
     said = [
         bands_sentence(found, fitted.held, values, why_held(found.unseen, points, config.tyre.side)),
         *(beside_sentence(band) for band in (found.combined, found.other_side) if band is not None),
         zeros_of_rig_sentence(zeros, found) if zeros and not config.rig.on_disc else "",
-        (one_side_of_a_disc if points.one_sided else one_sided_sentence)(fitted.held_rig),
+        one_side_of_a_disc(fitted.held_rig) if points.one_sided else "",
     ]
     return [f"{text[0].upper()}{text[1:]}." for text in said if text]
 

@@ -12,10 +12,9 @@ from mffit.constants import COVERAGE_FACTOR_95, USUAL_CORNERING_STIFFNESS
 from mffit.fit import constants
 from mffit.least_squares import FreeNumber
 from mffit.measured import Measured
-from mffit.points import Points, levels
+from mffit.points import Points
 from mffit.quantities import SIDEWAYS
 from mffit.rig_errors import BY_NAME, ZEROS, Faults, number_of
-from tir import Quantity
 
 SIDESLIP_ZERO = "alpha_0_deg"
 CAMBER_ZERO = "gamma_0_deg"
@@ -23,17 +22,13 @@ COMPLIANCE = "compliance_deg_per_Nm"
 
 
 def unseen_zeros(points: Points) -> frozenset[str]:
-    """The zeros of the axes that one set-up on a flat track does not tell from the tyre.
+    """The zeros of the axes that one set-up on a flat track does not separate from the tyre, in which they stay.
 
-    That of camber, unless the tyre was also run turned on its rim. That of sideslip, if all sweeps, or those that are driven or
-    braked, have sideslip of one sign only: what the formula misses there would pass as a zero.
+    That of sideslip looks like ply-steer in every run of one set-up: where the fit could separate the two, only what the formula
+    misses would. That of camber, unless the tyre was also run turned on its rim.
     """
-    steered = np.abs(points.alpha) > levels.SIDESLIP.tolerance
-    driven = steered & ~points.free_rolling
-    signs = [np.unique(np.sign(points.alpha[rows])) for rows in (steered, driven)]
-    one_sided = any(len(found) == 1 for found in signs)
     turned = len(np.unique(points.mount)) > 1
-    return frozenset(([] if turned else [CAMBER_ZERO]) + ([SIDESLIP_ZERO] if one_sided else []))
+    return frozenset([SIDESLIP_ZERO] if turned else [SIDESLIP_ZERO, CAMBER_ZERO])
 
 
 def known_faults(config: Config, measured: Measured, setups: Sequence[str] = ()) -> Faults:
@@ -66,13 +61,13 @@ def rig_numbers(
     setups: Sequence[str] = (),
     channels: Collection[str] = SIDEWAYS,
     *,
-    unseen: Collection[str] = (CAMBER_ZERO,),
+    unseen: Collection[str] = (SIDESLIP_ZERO, CAMBER_ZERO),
 ) -> tuple[FreeNumber, ...]:
     """The declared rig errors that the fit frees, with their priors, if they act on the ``channels`` of the fit.
 
     Calibrations are held, see :func:`held_rig`. On a disc without turn-slip zeros, errors of Fy, Mz and the angles are left out,
-    except the compliance of the steering. On a flat track the priors apportion an asymmetry between zeros on the one hand and
-    ply-steer, conicity and residual torque on the other; the ``unseen`` zeros are held, see :func:`unseen_zeros`. With several
+    except the compliance of the steering. On a flat track the priors apportion an asymmetry between zeros of forces on the
+    one hand and conicity and residual torque on the other; the ``unseen`` zeros are held, see :func:`unseen_zeros`. With several
     ``setups`` each has its own zeros; if repeated set-ups scatter more than declared, the scatter widens the prior of F0_N.
     """
     others = [
@@ -86,11 +81,11 @@ def rig_numbers(
 
 def held_rig(
     config: Config,
+    measured: Measured,
     setups: Sequence[str] = (),
     channels: Collection[str] = SIDEWAYS,
     *,
-    unseen: Collection[str] = (CAMBER_ZERO,),
-    C_alpha: Quantity | None = None,
+    unseen: Collection[str] = (SIDESLIP_ZERO, CAMBER_ZERO),
 ) -> dict[str, float]:
     """Standard uncertainty of declared errors that the ``channels`` cannot separate from coefficients.
 
@@ -98,7 +93,7 @@ def held_rig(
     looks like grip and stiffness. On a flat track a skew of the camber axis looks like camber stiffness. So does most of a
     camber zero: only terms quadratic in camber distinguish it, which the formula does not model well enough, so that misfit
     would appear as a zero of degrees. Several ``setups`` separate the zeros that are ``unseen`` with one, and on a disc turn slip
-    separates all; then the fit frees them. ``C_alpha`` [N/rad] turns declared forces into angles.
+    separates all; then the fit frees them. The measured cornering stiffness turns declared forces into angles.
     """
 
     def is_held(name: str) -> bool:
@@ -109,8 +104,16 @@ def held_rig(
         return not BY_NAME[name].of_setup or (name in unseen and len(setups) < 2)
 
     usual = USUAL_CORNERING_STIFFNESS * config.tyre.nominal_load
-    declared = declared_rig(config.rig, C_alpha.value if C_alpha else usual)
-    return {name: prior.u for name, prior in declared.items() if is_held(name)}
+    declared = declared_rig(config.rig, measured.C_alpha.value if measured.C_alpha else usual)
+    held = {name: prior.u for name, prior in declared.items() if is_held(name)}
+    if SIDESLIP_ZERO in held:
+        held[SIDESLIP_ZERO] = _with_lag(held[SIDESLIP_ZERO], measured)
+    return held
+
+
+def _with_lag(u: float, measured: Measured) -> float:
+    """Standard uncertainty [deg] of the sideslip zero: a lag that no sweep the other way shows moves the readings as it does."""
+    return math.hypot(u, math.degrees(measured.lag.angle) if measured.lag else 0.0)
 
 
 def _of_other_channels(name: str) -> bool:
@@ -172,8 +175,7 @@ def _of_setups(
             off = 0.0
             if name == SIDESLIP_ZERO:
                 off = abs(_misaligned(measured, setup))
-                # A lag that no sweep the other way shows moves the readings as the axis does.
-                u = math.hypot(u, math.degrees(measured.lag.angle) if measured.lag else 0.0)
+                u = _with_lag(u, measured)
             reach = constants.RIG_ERROR_REACH if setup else constants.FLAT_TRACK_ZERO_REACH
             found.append(_number(name, Declaration(value, max(u, off)), setup, reach))
     return tuple(found)

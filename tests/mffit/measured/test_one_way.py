@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mffit import config as configuration
-from mffit.fit.rig.rig_numbers import rig_numbers
+from mffit.fit.rig.rig_numbers import held_rig
 from mffit.measured import measure
 from mffit.measured.one_way import one_way_lag
 from mffit.parts import split
@@ -61,8 +61,8 @@ def test_an_unseen_lag_is_a_doubt_and_in_the_uncertainty_of_the_zero():
         )
         measured = measure(config, points, split(points))
         doubts = judge(JudgedMeasurement(points=points, nominal=measured.nominal, lag=measured.lag)).doubts
-        (zero,) = [n for n in rig_numbers(config, measured) if n.name == "alpha_0_deg"]
-        found.append((doubts, zero.spread, measured.lag))
+        zero = held_rig(config, measured)["alpha_0_deg"]
+        found.append((doubts, zero, measured.lag))
     ((said,), wide, lag), (none, usual, _) = found
     assert "one way" in said
     assert none == ()
