@@ -13,7 +13,7 @@ from tir.consumers import target_problems
 from tir.envelope import RANGES, over_the_range
 from tir.equations import normalise
 from tir.equations.forces import Forces, State
-from tir.errors import Problem, some
+from tir.errors import LEVELS, Problem, some
 from tir.evaluate import DIVISORS
 from tir.formula import OLD_KEYS
 from tir.mode import BLOCK
@@ -118,7 +118,7 @@ SIDES = ("LEFT", "RIGHT", "SYMMETRIC")
 
 
 def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
-    """Problems of the tyre: level "error" if it cannot be simulated sensibly, "warning" if the engineer should check it.
+    """Problems of the tyre, the gravest first: "error" if it cannot be simulated sensibly, "warning" if it should be looked at.
 
     Parameters
     ----------
@@ -131,7 +131,14 @@ def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
         If a target is unknown.
     """
     programs = [known_target(name) for name in ([targets] if isinstance(targets, str) else targets)]
-    found = [*_dimensions(tyre), *broken(tyre, SINGLE), *_ranges(tyre), *_mode(tyre), *_old_keys(tyre)]
+    found = [
+        *tyre.on_reading,
+        *_dimensions(tyre),
+        *broken(tyre, SINGLE),
+        *_ranges(tyre),
+        *_mode(tyre),
+        *_old_keys(tyre),
+    ]
     if "USE_MODE" in tyre.present and tyre.turn_slip and (not programs or any(p.siemens for p in programs)):
         found.append(_warning("USE_MODE", LICENCE))
     if not any(problem.level == "error" for problem in found):
@@ -142,7 +149,8 @@ def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
                 found += [*_radius(tyre), *_spin(tyre)]
     for target in programs:
         found += target_problems(tyre, target)
-    return [_with_line(problem, tyre) for problem in found]
+    found = [_with_line(problem, tyre) for problem in found]
+    return sorted(found, key=lambda problem: LEVELS.index(problem.level))
 
 
 def _with_line(problem: Problem, tyre: Tyre) -> Problem:

@@ -70,7 +70,7 @@ def described(kind: type[Kind], document: Document, lacking: Mapping[str, float 
         measured=MappingProxyType(measured),
         provenance=MappingProxyType(provenance),
         extra=MappingProxyType(extra),
-        problems=tuple(problems),
+        on_reading=tuple(problems),
         document=document,
     )
 

@@ -45,7 +45,7 @@ class TyreRecord:
     measured: Mapping[str, Quantity] = field(default_factory=lambda: EMPTY)
     provenance: Mapping[str, str] = field(default_factory=lambda: EMPTY)
     extra: Mapping[str, str] = field(default_factory=lambda: EMPTY)  #: "SECTION.KEY" -> text of unknown keys
-    problems: tuple[Problem, ...] = ()  #: problems found on reading
+    on_reading: tuple[Problem, ...] = ()  #: what only the text of the file shows; all: ``Tyre.problems``
     document: Document | None = field(default=None, repr=False)  #: the file's text, which is kept on writing
     correction: Correction | None = None  #: model error, added by calls
 

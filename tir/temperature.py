@@ -87,7 +87,7 @@ def at_temperature(tyre: Kind, T_degC: float) -> Kind:
         measured=stated, status=dict.fromkeys(scaled, f"at {T_degC:g} degC, by the temperature terms")
     )
     beyond = _beyond(tyre, T_degC)
-    return replace(moved, problems=(*tyre.problems, beyond)) if beyond else moved
+    return replace(moved, on_reading=(*tyre.on_reading, beyond)) if beyond else moved
 
 
 def _beyond(tyre: TyreRecord, T_degC: float) -> Problem | None:

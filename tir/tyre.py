@@ -6,6 +6,7 @@ import reprlib
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import FrozenInstanceError
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Never, Self
@@ -14,7 +15,7 @@ from tir import calls
 from tir.codegen.program import Switches
 from tir.document import Document, encoded, read_document
 from tir.equations.forces import Forces, State
-from tir.errors import counted
+from tir.errors import Problem, counted
 from tir.parameters import BY_NAME, TABLE
 from tir.properties import described
 from tir.record import TyreRecord
@@ -58,6 +59,13 @@ class Tyre(TyreRecord):
         way = f"; its parameter is tyre[{name!r}]" if name in BY_NAME else ""
         raise AttributeError(f"a tyre has no attribute {name!r}{way}", name=name, obj=self)
 
+    @cached_property
+    def problems(self) -> tuple[Problem, ...]:
+        """Everything unusual about the tyre, the gravest first: :func:`tir.check` for no program in particular."""
+        from tir.checking import check
+
+        return tuple(check(self))
+
     def __repr__(self) -> str:
         """The tyre in a few lines; ``tyre.values`` holds everything."""
         given = f"{len(self.present)} of {len(TABLE)} keys given"
@@ -71,8 +79,8 @@ class Tyre(TyreRecord):
         if origins:
             lines.append("origins: " + ", ".join(f"{n} {word}" for word, n in origins.most_common(6)))
         lines += [f"{name} = {q.value:.6g} +- {q.u:.2g} {q.unit}" for name, q in [*self.measured.items()][:6]]
-        if self.problems:
-            lines.append(f"{counted(len(self.problems), 'problem')} on reading, see tyre.problems")
+        if self.on_reading:
+            lines.append(f"{counted(len(self.on_reading), 'problem')} on reading, see tyre.problems")
         return "<" + "\n ".join(lines) + ">"
 
     def _repr_html_(self) -> str:
@@ -230,8 +238,8 @@ def _unchanged(name: str = "", value: Any = None) -> str:
 def read(path: str | Path, **lacking: float | str) -> Tyre:
     """The tyre of a ``.tir`` file of MF 6.1 or 6.2.
 
-    Units other than SI are converted, and missing keys take the defaults of the table. ``Tyre.problems`` lists everything
-    unusual with its line.
+    Units other than SI are converted, and missing keys take the defaults of the table. ``Tyre.problems`` lists
+    everything unusual with its line.
 
     Parameters
     ----------

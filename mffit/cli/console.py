@@ -86,9 +86,7 @@ class Voice:
 
     def warn_of(self, file: Path, tyre: Tyre) -> None:
         """Warn of what ``mffit check`` calls an error in a file that is in use: its forces are not those that were meant."""
-        import tir
-
-        self.warn(f"{file}: {one.sentence}" for one in tir.check(tyre) if one.level == "error")
+        self.warn(f"{file}: {one.sentence}" for one in tyre.problems if one.level == "error")
 
     def distrust(self, what: str) -> NoReturn:
         """End with the exit code of a result that is not to be trusted."""

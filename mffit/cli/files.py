@@ -27,13 +27,10 @@ def check(file: Path, targets: list[str], given: dict[str, float], voice: Voice)
     that read it (--for chrono).
     """
     import tir
-    from tir.errors import LEVELS, counted
+    from tir.errors import counted
 
-    found = _of_old(file, targets, given)
-    if found is None:
-        tyre = tir.read(file, **given)
-        found = [*tyre.problems, *tir.check(tyre, targets)]
-    problems = sorted(found, key=lambda problem: LEVELS.index(problem.level))
+    of_old = _of_old(file, targets, given)
+    problems = tir.check(tir.read(file, **given), targets) if of_old is None else of_old
     for problem in problems:
         voice.say(f"{problem.level}: {problem.sentence}")
     errors, warnings = (sum(p.level == level for p in problems) for level in ("error", "warning"))
@@ -111,7 +108,7 @@ def convert(
 
     found = conversion.to_old(file, to, given) if to else conversion.convert(file, given, fittyp=fittyp)
     conversion.write(found, out)
-    voice.warn(problem.sentence for problem in found.problems)
+    voice.warn(problem.sentence for problem in found.problems if problem.level != "error")
     answer = {"file": found.path, "written": out, **as_json.document(found)}
     voice.answer(answer, f"{text.conversion_summary(found)}\nwritten to {out}")
     if wording.reasons(found):

@@ -81,7 +81,7 @@ def convert(
     provenance = {ORIGIN: f"{old.path.name}, {old.kind}, {how}", MISFIT: wording.worst(misfit)}
     tyre = tyre.annotate(status=_status(old, values, found), provenance=provenance)
     return Conversion(
-        path=old.path, problems=old.problems, old=old, tyre=tyre, kind=old.kind, text=tyre.text(),
+        path=old.path, problems=(*old.problems, *tyre.problems), old=old, tyre=tyre, kind=old.kind, text=tyre.text(),
         reach=reach, misfit=misfit, fitted=tuple(found), held=held(p, reach),
     )  # fmt: skip
 

@@ -69,7 +69,7 @@ class Conversion(Brief):
     """A converted file, of either formula, and how near it comes to the other one."""
 
     path: Path  #: the file that was converted
-    problems: tuple[Problem, ...]  #: what it has of note
+    problems: tuple[Problem, ...]  #: of either formula
     old: OldFile | None  #: itself, if it is of the older formula
     tyre: Tyre  #: the tyre in MF 6.2: what was made, each coefficient marked as converted; else what was read
     kind: str  #: the older formula in words

@@ -85,8 +85,8 @@ def trusted(found: Conversion) -> bool:
 
 
 def reasons(found: Conversion) -> list[str]:
-    """Why the converted file is not to be trusted; empty if its misfit is small."""
-    out = against_sideslip(found)
+    """Why the converted file is not to be trusted; empty if it has no error and its misfit is small."""
+    out = against_sideslip(found) + [one.sentence for one in found.problems if one.level == "error"]
     for row in found.poor:
         out.append(
             f"{MODEL[row.channel].symbol} at {region(row)} is off by up to {size(row)}, in rms by {row.rms_share:.1%} of the "

@@ -117,7 +117,7 @@ def test_the_file_holds_the_coefficients_of_the_json(tyre, result):
     assert tyre["FNOMIN"] == 1500.0
     assert tyre["UNLOADED_RADIUS"] == 0.3
     assert tyre["NOMPRES"] == 250e3
-    assert tyre.problems == ()
+    assert tyre.on_reading == ()
 
 
 def test_the_json_has_the_keys_of_the_contract(result):

@@ -148,18 +148,18 @@ def test_a_car_file_needs_no_keys_of_motorcycles_or_of_single_programs(tmp_path)
     """Car files of 6.2 as they are published: no USE_MODE, no contour of a motorcycle tyre, solver's words in [MODEL]."""
     text = re.sub(r"(?m)^(USE_MODE|MC_CONTOUR_[AB]) .*\n", "", TEXT)
     text = text.replace("[MODEL]", "[MODEL]\nFUNCTION_NAME = 'TNO_X::TYR815'\nSWITCH_INTEG = 1")
-    assert not read_text(tmp_path, text).problems
+    assert not read_text(tmp_path, text).on_reading
 
 
 def test_a_key_without_a_value_is_reported_once(tmp_path):
     text = re.sub(r"(?m)^ROAD_INCREMENT .*$", "ROAD_INCREMENT = ", TEXT)
-    assert [p.name for p in read_text(tmp_path, text).problems] == ["ROAD_INCREMENT"]
+    assert [p.name for p in read_text(tmp_path, text).on_reading] == ["ROAD_INCREMENT"]
 
 
 def test_a_file_of_mf60_gets_one_warning(tmp_path):
     text = re.sub(r"(?m)^FITTYP .*$", "FITTYP = 60", TEXT)
     text = re.sub(r"(?m)^(INFLPRES|NOMPRES) .*\n", "", text)
-    (problem,) = read_text(tmp_path, text).problems
+    (problem,) = read_text(tmp_path, text).on_reading
     assert re.search(r"60.*2 keys of MF 6\.1", problem.sentence)
 
 
@@ -558,11 +558,11 @@ class TestCheck:
 
     def test_a_file_of_mf61_gets_no_warning_about_keys_of_62(self, tmp_path):
         found = read_text(tmp_path, (VECTORS / "MagicFormula61.tir").read_text(encoding="ascii"))
-        assert not [p for p in (*found.problems, *check(found, ["mf61"])) if p.level == "error"]
-        assert found.problems == ()
+        assert not [p for p in check(found, ["mf61"]) if p.level == "error"]
+        assert found.on_reading == ()
 
     def test_a_file_without_the_keys_of_adams_lacks_nothing(self, tmp_path, tyre):
-        assert read_text(tmp_path, tyre.text("mftyre")).problems == ()
+        assert read_text(tmp_path, tyre.text("mftyre")).on_reading == ()
 
     def test_a_template_of_zeros_is_judged_without_a_warning_of_numpy(self):
         zeros = {row.name: 0.0 for row in TABLE if row.section.endswith("COEFFICIENTS") and not row.scaling}
