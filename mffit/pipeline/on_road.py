@@ -29,12 +29,12 @@ def _better(config: Config, points: Points, measured: Measured) -> Iterator[str]
     if not config.rig.on_disc:
         return
     if not config.tyre.base:
-        yield "the file of a like tyre as base (readings on a disc hardly tell spin from trail)"
+        yield "a like tyre's file as base"
     camber = unspun(points, measured)
     if camber is not None and not _was_coupled(points, camber):
-        yield f"a sideslip sweep at {math.degrees(camber):.1f} deg of camber, where the path gives no spin"
+        yield f"a sideslip sweep at {math.degrees(camber):.1f} deg of camber (no spin there)"
     if points.one_sided:
-        yield "sweeps on the other side of the disc"
+        yield "the other side of the disc"
 
 
 def unspun(points: Points, measured: Measured) -> float | None:

@@ -101,10 +101,6 @@ def purposes(result: BuildResult) -> dict[str, str]:
         text = FOR.get(use, use)
         if use == "normal" and "turn-slip" not in result.files:
             text = "simulators with turn slip off (USE_MODE {mode:.0f})"
-        files = result.fit.files
-        if use == "normal" and "turn-slip" in result.files and files is not None:
-            off = [f"{m.ridden:.3g} {CHANNELS[name].unit}" for name, m in files.by_use[use].straight.items()]
-            text += f"; {' and '.join(off)} off the model"
         if use in result.tyres and lacks_fx(result.tyres[use]):
             text += f"; {NO_FX}"
         found.setdefault(name, text.format(mode=mode, T=warm.T_ref if warm else 0.0))

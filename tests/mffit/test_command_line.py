@@ -313,6 +313,10 @@ def test_build_prints_one_screen_and_everything_on_request(tmp_path, capsys):
     assert lines[0].startswith("toy.tir is ")
     assert f"written to {tmp_path / 'out'}: report.html, result.json, points.csv, plots" in said.out
     assert "toy-normal.tir: for simulators without turn slip" in said.out
+    said_of_road = " ".join(said.out.split())
+    assert said_of_road.index("road, 1500 N") < said_of_road.index("written to")
+    assert "toy-normal.tir misses the road by" in said_of_road
+    assert "or the other side of the disc" in said_of_road
     assert mffit("build", project, "--explain") == 0
     whole = capsys.readouterr()
     assert "Tested: " in whole.out

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 from mffit.diagnosis import wording
 from mffit.fit import zeros_listed
 from mffit.measured import wording as of_direct
+from mffit.prediction import road_sentences
+from mffit.quantities import CHANNELS, CONDITIONS, DIRECT, SIDEWAYS
 from mffit.report import constants
 from mffit.report.text import filling
 from mffit.report.text.direct import MAIN, estimates, setups_table, spin_numbers
-from mffit.report.text.layout import cut
+from mffit.report.text.layout import cut, table
 from mffit.report.verdict import headlines, over_noise, purposes, verdict
 from mffit.results import BuildResult
+from mffit.rounding import stated
 from tir.errors import counted
 from tir.parameters import BY_NAME
 
@@ -32,12 +36,12 @@ def build_summary(result: BuildResult, written: str = "") -> str:
     return filling.text(
         "build",
         build=result,
-        over_noise=lambda channel: over_noise(result, channel),
         verdict=verdict(result),
+        road=_of_road(result),
+        road_said=_said_of_road(result),
         written=written,
         purposes=purposes(result),
         numbers=spin_numbers(result.measured, MAIN) if in_direct else _of_model(result),
-        zeros=zeros_listed(result.fit.rig),
         said=[counted(number, what) for what, number in counts.items() if number],
     )
 
@@ -48,6 +52,8 @@ def build_explained(result: BuildResult) -> str:
     return filling.text(
         "explained",
         build=result,
+        over_noise=lambda channel: over_noise(result, channel),
+        zeros=zeros_listed(result.fit.rig),
         numbers=spin_numbers(result.measured),
         estimates=estimates(result.measured),
         setups=setups_table(result.measured),
@@ -63,6 +69,32 @@ def few(warnings: Iterable[str]) -> list[str]:
     shown = [cut(sentence, 2, " " * len("warning: ")) for sentence in every[: constants.MOST_REASONS]]
     more = len(every) - len(shown)
     return shown + ([f"{more} more: report.html, --explain or --quiet shows them"] if more > 0 else [])
+
+
+def _of_road(result: BuildResult) -> str:
+    """The table of the road: a line for each side of zero sideslip."""
+    road = result.road
+    if road is None:
+        return ""
+    names = [
+        name for name in ("Fy", "Mz", "mu_y", "M_zmax") if getattr(road.sides["positive"], name) is not None
+    ]
+    units = CHANNELS | DIRECT
+    head = [f"road, {CONDITIONS['Fz_N'].of(road.load)}"]
+    head += [f"{units[name].ascii}{' there' if name in SIDEWAYS else ''}" for name in names]
+    rows = [
+        [
+            f"{sign * math.degrees(road.sideslip):+.3g} deg of sideslip",
+            *(stated(getattr(road.sides[side], name), units[name].unit_behind) for name in names),
+        ]
+        for side, sign in (("negative", -1.0), ("positive", 1.0))
+    ]
+    return table(head, rows)
+
+
+def _said_of_road(result: BuildResult) -> list[str]:
+    """The sentences on the road."""
+    return [] if result.road is None else road_sentences(result.road, result.files.get("normal", ""))
 
 
 def _of_model(result: BuildResult) -> str:

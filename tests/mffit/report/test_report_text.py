@@ -67,7 +67,7 @@ def test_build_summary_begins_with_the_verdict_and_fits_a_screen(result):
 
 def test_the_zeros_of_all_channels_stand_in_the_list(result):
     rig = {"F0_N": (2.04, 0.31), "Fx0_N": (4.0, 18.2), "Mx0_Nm": (-57.3, 17.9), "gain": (1.0, 0.005)}
-    summary = text.build_summary(replace(result, fit=replace(result.fit, rig=rig)))
+    summary = text.build_explained(replace(result, fit=replace(result.fit, rig=rig)))
     said = " ".join(summary.split())
     for zero in ("Fy 2.04 +- 0.31 N", "Fx 4 +- 18 N", "Mx -57 +- 18 Nm"):
         assert f"load-cell zero of {zero}" in said
