@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from importlib import resources
 from importlib.resources.abc import Traversable
@@ -13,6 +14,8 @@ from mffit.sweeps.channels import SWEEP_CHANNELS
 
 OFFERED = ("alpha_deg", "gamma_deg", "Fz_N", "Fy_N", "Mz_Nm", "p_kPa", "V_mps", "T_degC")
 """Headings of the templates: the channels that a rig usually reports for a finished point."""
+FILL_IN = re.compile(r"^# (\w+) = .*# FILL IN", re.MULTILINE)
+"""Line of the template with a key that only the user knows."""
 
 
 def init_project(folder: str | Path) -> list[Path]:
@@ -22,10 +25,19 @@ def init_project(folder: str | Path) -> list[Path]:
     to.
     """
     folder = Path(folder)
-    template = resources.files("mffit.config").joinpath("template.toml").read_text(encoding="utf-8")
+    template = _template()
     names = [entry["file"] for entry in tomllib.loads(template)["sweep"]]
     contents = {"tyre.toml": template} | {name: headings() for name in names}
     return new_files(folder, contents)
+
+
+def to_fill_in() -> list[str]:
+    """The keys of the template that only the user knows; without them nothing is built."""
+    return FILL_IN.findall(_template())
+
+
+def _template() -> str:
+    return resources.files("mffit.config").joinpath("template.toml").read_text(encoding="utf-8")
 
 
 def copy_sample(name: str, folder: str | Path) -> list[Path]:

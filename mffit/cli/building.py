@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +14,7 @@ from mffit.cli.options import PATH, out_option, strict
 from mffit.errors import InputError
 
 if TYPE_CHECKING:
-    from mffit.results import BuildOutcome
+    from mffit.results import BuildOutcome, BuildResult
 
 FEWEST_TYRES_TO_COMPARE = 2
 
@@ -45,7 +47,9 @@ FEWEST_TYRES_TO_COMPARE = 2
     help="Write neither report.html nor plots, for quick tries.",
 )
 @click.option(
-    "--explain", is_flag=True, help="Print everything that is said about the result, not one screen of it."
+    "--explain",
+    is_flag=True,
+    help="Print everything that is said about the result; what is built already is read from the folder.",
 )
 @strict
 @click.option("--jobs", type=click.IntRange(1), default=1, help="Number of tyres to build at the same time.")
@@ -56,6 +60,10 @@ def build(tyre_tomls: tuple[Path, ...], jobs: int, dask: str | None, **asked: An
 
     Runs the whole pipeline and writes .tir, result.json, report.html, points.csv and plots.
     """
+    if (len(tyre_tomls) > 1 or dask) and asked["explain"]:
+        raise click.UsageError(
+            "--explain is for one TYRE_TOML; a folder that is built keeps it as explained.txt"
+        )
     if len(tyre_tomls) > 1 or dask:
         _build_many(tyre_tomls, jobs=jobs, dask=dask, **asked)
     else:
@@ -76,24 +84,46 @@ def _build(
     from mffit import config, pipeline
     from mffit.report import text
 
-    out = out or tyre_toml.parent / "out"
-    with voice.progress() as show:
-        settings = config.load(tyre_toml, coefficients=coefficients)
-        result = pipeline.build(settings, out, progress=show, **asked)
-    tables = (
-        "report.html, result.json, points.csv, plots" if asked["with_report"] else "result.json, points.csv"
-    )
+    where = out or tyre_toml.parent / "out"
+    settings = config.load(tyre_toml, coefficients=coefficients)
+    if not (explain and pipeline.is_current(settings, where, **asked)):
+        with voice.progress() as show:
+            result = pipeline.build(settings, where, progress=show, **asked)
+        if not explain:
+            voice.warn(result.warnings if voice.quiet or voice.json else text.few(result.warnings))
+            voice.answer(result, _summary(result, tyre_toml, out, coefficients))
+            return _judge(voice, result.tir_path, result.reasons, result.trust.doubts, strict=strict)
+    said, kept = pipeline.explained(where)
+    voice.warn(kept["warnings"])
+    voice.answer(kept, said)
+    _judge(voice, kept["tir"], kept["reasons"], kept["in_doubt"], strict=strict)
+
+
+def _summary(result: BuildResult, tyre_toml: Path, out: Path | None, coefficients: tuple[str, ...]) -> str:
+    """One screen about a build, which ends with commands that go on from it."""
+    from mffit.report import text
+
+    where = out or tyre_toml.parent / "out"
+    has_report = (where / "report.html").exists()
+    tables = "report.html, result.json, points.csv, plots" if has_report else "result.json, points.csv"
     drawn = f", ensemble ({len(result.members)} files)" if result.members else ""
-    whole = explain or voice.quiet or voice.json
-    voice.warn(result.warnings if whole else text.few(result.warnings))
-    voice.say(text.build_summary(result, f"{out}: {tables}{drawn}"))
-    if explain:
-        voice.say("\n" + text.build_explained(result))
-    voice.give(result)
-    if not result.trusted:
-        voice.distrust(f"{result.tir_path} is not to be trusted: see above")
-    if strict and result.trust.doubts:
-        voice.distrust(f"{result.tir_path} is in doubt, and --strict asks for more: {result.trust.doubts[0]}")
+    again = ["mffit", "build", str(tyre_toml), *([] if out is None else ["--out", str(out)])]
+    again += [] if has_report else ["--no-report"]
+    again += [word for one in coefficients for word in ("--set", one)]
+    model = [] if out is None else ["--model", str(out / result.tir_path)]
+    following = [(shlex.join([*again, "--explain"]), "all that is said about the result")]
+    if result.reasons or result.trust.doubts:
+        why = shlex.join(["mffit", "diagnose", str(tyre_toml), *model]), "names what the model misses"
+        following.insert(0, why)
+    return text.build_summary(result, f"{where}: {tables}{drawn}", following)
+
+
+def _judge(voice: Voice, file: str, reasons: Sequence[str], doubts: Sequence[str], *, strict: bool) -> None:
+    """Exit with the code of a result that is not to be trusted, or with ``strict`` one in doubt."""
+    if reasons:
+        voice.distrust(f"{file} is not to be trusted: see above")
+    if strict and doubts:
+        voice.distrust(f"{file} is in doubt, and --strict asks for more: {doubts[0]}")
 
 
 def _build_many(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -63,7 +64,8 @@ def sniff(files: tuple[Path, ...], headings: dict[str, str], voice: Voice) -> No
 @voiced
 def init(paths: tuple[Path, ...], recorded: bool, sample: str | None, voice: Voice, **asked: Any) -> None:
     """Write a commented tyre.toml and empty CSV templates, with --from a project for recordings, or a sample."""
-    from mffit.init_project import copy_sample, init_project
+    from mffit.init_project import copy_sample, init_project, to_fill_in
+    from mffit.report import text
 
     *files, folder = paths
     if recorded and sample is not None:
@@ -76,8 +78,14 @@ def init(paths: tuple[Path, ...], recorded: bool, sample: str | None, voice: Voi
         )
     else:
         written = init_project(folder) if sample is None else copy_sample(sample, folder)
-    answer = {"written": [str(path) for path in written]}
-    voice.answer(answer, "\n".join(f"written {path}" for path in written))
+    lines = [f"written {path}" for path in written]
+    build = shlex.join(["mffit", "build", str(written[0])])
+    if recorded or sample is not None:
+        lines += ["", text.steps([(build, "fits the property file")])]
+    else:
+        keys = ", ".join(to_fill_in())
+        lines += ["", f"Fill in {keys} in {written[0]} and the empty tables; then run {build}"]
+    voice.answer({"written": [str(path) for path in written]}, "\n".join(lines))
 
 
 def _init_from(

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from mffit.pipeline.exporting import write_tydex
     from mffit.pipeline.fleets import fleet
     from mffit.pipeline.intake import init_from, project_of
-    from mffit.pipeline.many import build_many
+    from mffit.pipeline.many import build_many, explained, is_current
     from mffit.pipeline.measuring import align, spin
     from mffit.pipeline.planning import plan
     from mffit.pipeline.showing import show
@@ -24,8 +24,10 @@ __all__ = [
     "build_many",
     "compare",
     "diagnose",
+    "explained",
     "fleet",
     "init_from",
+    "is_current",
     "plan",
     "predict",
     "project_of",

@@ -29,7 +29,9 @@ from tir import Quantity, Tyre
 USES = ("turn-slip", "normal")
 """Uses of a property file that are part of its name where it is not the plain one."""
 REPORT = "report.html"
-WRITTEN = ("result.json", "information.json", prediction.FILE, "points.csv", REPORT)
+EXPLAINED = "explained.txt"
+"""What ``mffit build --explain`` prints."""
+WRITTEN = ("result.json", "information.json", prediction.FILE, "points.csv", EXPLAINED, REPORT)
 """Files that every build writes beside its property files."""
 FOLDER, INDEX = "ensemble", "index.csv"
 NUMBERS = ("epsilon_gamma", *COMPARED)
@@ -43,6 +45,8 @@ def write_build(
 
     ``stretches`` of recordings go to ``stretches.csv``. Without report, page and plots of an earlier build are removed.
     """
+    from mffit.report import text
+
     name = result.config.tyre.name
     siblings = [*(f"{name}-{use}.tir" for use in USES), name_at_temperature(name), result.correction_name]
     if not with_report:
@@ -52,6 +56,7 @@ def write_build(
             result.tyres[use].write(folder / name)
         as_json.write(folder / "result.json", result)
         _write_information(folder / "information.json", result)
+        (folder / EXPLAINED).write_text(f"{text.build_explained(result)}\n", encoding="ascii")
         write_csv(points_table(result), folder / "points.csv")
         known, use = result.predicting
         if known is not None:

@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from mffit import config as configuration
 from mffit.config import Config
@@ -16,7 +17,7 @@ from mffit.errors import InputError
 from mffit.fleet import read
 from mffit.made import made
 from mffit.output import written_by
-from mffit.pipeline.build_output import FOLDER, REPORT, WRITTEN, resolved_text
+from mffit.pipeline.build_output import EXPLAINED, FOLDER, REPORT, WRITTEN, resolved_text
 from mffit.pipeline.building import build
 from mffit.pipeline.inputs import input_hashes
 from mffit.pipeline.workers import Job, Outcomes, in_processes, on_cluster
@@ -161,3 +162,9 @@ def is_current(config: Config, out: Path, *, ensemble: int = 0, with_report: boo
         )
     except (OSError, ValueError, LookupError, TypeError, AttributeError):
         return False
+
+
+def explained(out: Path) -> tuple[str, dict[str, Any]]:
+    """All that is said about a build, and the content of its ``result.json``, from the folder that it wrote."""
+    text = (out / EXPLAINED).read_text(encoding="ascii").rstrip("\n")
+    return text, json.loads((out / "result.json").read_text(encoding="utf-8"))

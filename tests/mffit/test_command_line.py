@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 import tomllib
@@ -15,7 +16,7 @@ import pytest
 from disc_project import Project, disc_project, rows
 
 import tir
-from mffit import config
+from mffit import config, pipeline
 from mffit.cli import main
 from mffit.points import load
 
@@ -309,7 +310,7 @@ def test_build_prints_one_screen_and_everything_on_request(tmp_path, capsys):
     assert mffit("build", project) == 0
     said = capsys.readouterr()
     lines = [*said.out.splitlines(), *said.err.splitlines()]
-    assert len(lines) <= 26  # with three warnings
+    assert len(lines) <= 30  # with three warnings, none of which is cut
     assert lines[0].startswith("toy.tir is ")
     assert f"written to {tmp_path / 'out'}: report.html, result.json, points.csv, plots" in said.out
     assert "toy-normal.tir: for simulators without turn slip" in said.out
@@ -323,6 +324,26 @@ def test_build_prints_one_screen_and_everything_on_request(tmp_path, capsys):
     assert "Tested: " not in said.out
     warnings = json.loads((tmp_path / "out" / "result.json").read_text(encoding="utf-8"))["warnings"]
     assert all(f"warning: {sentence}" in whole.err for sentence in warnings)
+
+
+def next_lines(said: str) -> list[list[str]]:
+    """The commands that a text ends with, as a shell splits them."""
+    return [shlex.split(line, comments=True) for line in said.partition("Next:\n")[2].splitlines()]
+
+
+def test_what_a_build_says_to_do_next_does_it(tmp_path, capsys, monkeypatch):
+    """Each line as it is printed, also with a folder of its own; what is explained is read, not built again."""
+    project, out = disc(tmp_path / "my rig").write(), tmp_path / "an other"
+    assert mffit("build", project, "--out", out, "--set", "PCY1=1.3", "--no-report") == 0
+    following = next_lines(capsys.readouterr().out)
+    assert [words[:2] for words in following] == [["mffit", "diagnose"], ["mffit", "build"]]
+    assert mffit(*following[0][1:]) == 0
+    assert "gap, rms" in capsys.readouterr().out
+    before = (out / "result.json").read_bytes()
+    monkeypatch.setattr(pipeline, "build", None)
+    assert mffit(*following[1][1:]) == 0
+    assert "Tested: " in capsys.readouterr().out
+    assert (out / "result.json").read_bytes() == before
 
 
 def test_spin_on_a_flat_track_explains_why_there_is_no_factor(tmp_path, capsys):

@@ -14,13 +14,36 @@ from mffit import config, sweeps
 from mffit.cli import projects
 from mffit.config.problems import known_keys
 from mffit.errors import InputError
-from mffit.init_project import copy_sample, init_project, sample_names
+from mffit.init_project import copy_sample, init_project, sample_names, to_fill_in
 
 SAMPLES = Path(__file__).parents[2] / "samples"
 
 
+def test_an_empty_project_is_refused_and_the_keys_to_fill_in_are_named(tmp_path):
+    """No number of another tyre is in use before the user has written his own."""
+    file = init_project(tmp_path / "new")[0]
+    left = to_fill_in()
+    assert "unloaded_radius" in left
+    assert "path_radius" in left
+    while left:
+        with pytest.raises(InputError) as refused:
+            config.load(file)
+        assert left[0] in str(refused.value)
+        filled_in(file, left.pop(0))
+    with pytest.raises(InputError, match="no data"):
+        sweeps.load(config.load(file))
+
+
+def filled_in(file: Path, *keys: str) -> None:
+    text = file.read_text()
+    for key in keys:
+        text = re.sub(rf"^# (?={key} = .*# FILL IN)", "", text, flags=re.MULTILINE)
+    file.write_text(text)
+
+
 def test_the_configuration_is_valid_and_its_files_are_there(tmp_path):
     paths = init_project(tmp_path / "new")
+    filled_in(paths[0], *to_fill_in())
     found = config.load(paths[0])
     assert paths[0].name == "tyre.toml"
     assert {sweep.file for sweep in found.sweep} == {path.name for path in paths[1:]}

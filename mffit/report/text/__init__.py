@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from mffit.report.text.convert import conversion_summary
     from mffit.report.text.diagnosis import diagnosis_summary, models_written
     from mffit.report.text.direct import alignment_table, budget_table, spin_summary
+    from mffit.report.text.layout import steps
     from mffit.report.text.many import fleet_summary, lacking, many_line, many_summary
     from mffit.report.text.plan import plan_summary
     from mffit.report.text.prediction import prediction_summary
@@ -37,5 +38,6 @@ __all__ = [
     "prediction_summary",
     "sniff_summary",
     "spin_summary",
+    "steps",
 ]
 __getattr__ = on_demand(__name__)

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from mffit.diagnosis import wording
 from mffit.fit import zeros_listed
 from mffit.measured import wording as of_direct
 from mffit.prediction import road_sentences
-from mffit.quantities import CHANNELS, CONDITIONS, DIRECT, SIDEWAYS
+from mffit.quantities import CHANNELS, CONDITIONS, DIRECT, KEYS, SIDEWAYS
 from mffit.report import constants
 from mffit.report.text import filling
-from mffit.report.text.direct import MAIN, estimates, setups_table, spin_numbers
-from mffit.report.text.layout import cut, table
+from mffit.report.text.direct import estimates, setups_table, spin_numbers
+from mffit.report.text.layout import steps, table
 from mffit.report.verdict import headlines, over_noise, purposes, verdict
 from mffit.results import BuildResult
 from mffit.rounding import stated
@@ -24,37 +24,56 @@ FORCES = "_COEFFICIENTS"
 """End of the sections whose coefficients are those of a force or moment."""
 
 
-def build_summary(result: BuildResult, written: str = "") -> str:
-    """What ``mffit build`` prints: the verdict, the files and whom they are for, the numbers, and what to do next."""
-    in_direct = result.measured.epsilon_gamma is not None
+def build_summary(result: BuildResult, written: str = "", following: Sequence[tuple[str, str]] = ()) -> str:
+    """What ``mffit build`` prints: the verdict, the files and whom they are for, the numbers, and what to do next.
+
+    ``following`` are commands to run next, each with what it does.
+    """
+    return filling.text(
+        "build",
+        **_content(result),
+        written=written,
+        reasons=result.reasons[: constants.MOST_REASONS],
+        numbers=_of_model(result),
+        following=steps(following),
+    )
+
+
+def _content(result: BuildResult) -> dict[str, object]:
+    """What the summary and the explanation of a build share."""
     counts = {
         "reading left out by hand": sum(row.count for row in result.left_out if row.by == "hand"),
         "reading without weight": len(result.fit.outliers),
         "sweep in doubt": len(result.fit.doubts),
         "limit of what the file can say": len(result.trust.remarks),
     }
-    return filling.text(
-        "build",
-        build=result,
-        verdict=verdict(result),
-        road=_of_road(result),
-        road_said=_said_of_road(result),
-        written=written,
-        purposes=purposes(result),
-        numbers=spin_numbers(result.measured, MAIN) if in_direct else _of_model(result),
-        said=[counted(number, what) for what, number in counts.items() if number],
-    )
+    return {
+        "build": result,
+        "verdict": verdict(result),
+        "road": _of_road(result),
+        "road_said": _said_of_road(result),
+        "purposes": purposes(result),
+        "said": [counted(number, what) for what, number in counts.items() if number],
+    }
 
 
 def build_explained(result: BuildResult) -> str:
-    """What ``mffit build --explain`` prints besides: what each file is and is not, limits, residuals, statuses."""
+    """What ``mffit build --explain`` prints: the summary, what each file is and is not, limits, residuals, statuses."""
+    nominal = result.measured.nominal
+    # The cornering stiffness that a user came for is the tyre's, not the one along the path of the disc.
+    hidden = {"C_alpha"} if nominal is not None and nominal.C_alpha_straight is not None else set()
     of_forces = [c for name, c in result.fit.coefficients.items() if BY_NAME[name].section.endswith(FORCES)]
     return filling.text(
         "explained",
-        build=result,
+        **_content(result),
+        written="",
+        following="",
+        reasons=result.reasons,
         over_noise=lambda channel: over_noise(result, channel),
         zeros=zeros_listed(result.fit.rig),
-        numbers=spin_numbers(result.measured),
+        numbers=spin_numbers(result.measured, [name for name in KEYS if name not in hidden])
+        if result.measured.epsilon_gamma is not None
+        else _of_model(result),
         estimates=estimates(result.measured),
         setups=setups_table(result.measured),
         of_spin=of_direct,
@@ -64,11 +83,10 @@ def build_explained(result: BuildResult) -> str:
 
 
 def few(warnings: Iterable[str]) -> list[str]:
-    """The first warnings, each cut to two lines, and how many there are."""
+    """The first warnings, and how many more there are; none is cut, because its end says what to do."""
     every = list(warnings)
-    shown = [cut(sentence, 2, " " * len("warning: ")) for sentence in every[: constants.MOST_REASONS]]
-    more = len(every) - len(shown)
-    return shown + ([f"{more} more: report.html, --explain or --quiet shows them"] if more > 0 else [])
+    more = len(every) - constants.MOST_REASONS
+    return every[: constants.MOST_REASONS] + ([f"{more} more: --explain shows them"] if more > 0 else [])
 
 
 def _of_road(result: BuildResult) -> str:

@@ -11,8 +11,6 @@ from mffit.quantities import CONDITIONS, DIRECT, KEYS
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.rounding import as_good_as, number, stated, with_u
 
-MAIN = ("epsilon_gamma", "C_phit", "C_gamma", "C_alpha")
-"""Those that a user came for."""
 PER_LOAD = ("epsilon_gamma", "F_phit", "C_phit", "C_gamma", "C_alpha")
 """Results of the direct method at every load, in the order of the tables."""
 

@@ -29,7 +29,7 @@ def templates(*, escaped: bool) -> Environment:
     found.filters |= {"counted": counted, "columns": layout.columns}
     for name in ("number", "with_u", "stated", "as_good_as", "times", "per_cent"):
         found.filters[name] = getattr(rounding, name)
-    for name in ("cut", "paragraphs", "wrapped"):
+    for name in ("paragraphs", "wrapped"):
         found.filters[name] = getattr(layout, name)
     found.globals |= {
         "channels": CHANNELS,
@@ -39,7 +39,6 @@ def templates(*, escaped: bool) -> Environment:
         "direct": DIRECT,
         "meaning_of": meaning_of,
         "most": int(constants.MOST_ROWS),
-        "most_reasons": int(constants.MOST_REASONS),
         "words": words,
     }
     return found

@@ -70,8 +70,8 @@ def wrapped(sentence: str, first: str = "", others: str = "") -> str:
     return textwrap.fill(sentence, TERMINAL_WIDTH, initial_indent=first, subsequent_indent=others)
 
 
-def cut(sentence: str, lines: int, indent: str = "") -> str:
-    """A sentence in at most so many lines, which leave room for an indent."""
-    return textwrap.fill(
-        sentence, TERMINAL_WIDTH - len(indent), subsequent_indent=indent, max_lines=lines, placeholder=" ..."
-    )
+def steps(commands: Sequence[tuple[str, str]]) -> str:
+    """Commands to run next, a line each, with what they do as the comment of a shell; a command is never broken."""
+    width = max((len(command) for command, _ in commands), default=0)
+    lines = [f"  {command:<{width}}  # {what}" for command, what in commands]
+    return "\n".join(["Next:", *lines]) if lines else ""

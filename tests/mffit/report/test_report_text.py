@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 
 from mffit.measured import Contribution, align
 from mffit.measured.result import FINITE_SPIN
 from mffit.report import text
+from mffit.report.constants import MOST_REASONS
 from mffit.report.text.layout import columns
 from mffit.rounding import ascii_only, decimals_of, stated
 from mffit.suspicion import Trust
@@ -84,15 +86,34 @@ def test_a_result_that_is_not_to_be_trusted_says_so_and_why_first(result):
     reasons = [f"reason {k} " + "with many words " * 40 for k in range(5)]
     lines = text.build_summary(replace(result, trust=Trust(reasons=tuple(reasons)))).splitlines()
     assert "NOT TO BE TRUSTED" in lines[0]
-    assert len(lines) <= 25
-    assert any(line.startswith("NOT TO BE TRUSTED: reason 0") for line in lines)
+    assert [line[:27] for line in lines if line.startswith("NOT")] == [
+        f"NOT TO BE TRUSTED: reason {k}" for k in range(MOST_REASONS)
+    ]
 
 
 def test_warnings_are_few_and_the_rest_is_counted():
-    said = text.few([f"warning {k} " + "with many words " * 40 for k in range(5)])
-    assert len("\n".join(said).splitlines()) == 5
-    assert said[-1].startswith("3 more")
+    said = text.few([f"warning {k}" for k in range(5)])
+    assert said[-1].startswith(f"{5 - MOST_REASONS} more")
     assert text.few(["one"]) == ["one"]
+
+
+def test_what_to_do_is_never_cut(result):
+    """A sentence ends with its cure."""
+    sentence = "the readings disagree " + "with many words " * 40 + "; zero the load cell"
+    summary = text.build_summary(replace(result, trust=Trust(reasons=(sentence,))))
+    assert sentence in " ".join(summary.split())
+    assert text.few([sentence]) == [sentence]
+
+
+def test_the_summary_ends_with_commands_as_a_shell_takes_them(result):
+    said = text.build_summary(result, following=[("mffit build a.toml --explain", "what it does")])
+    assert said.splitlines()[-2:] == ["Next:", "  mffit build a.toml --explain  # what it does"]
+
+
+def test_the_terminal_states_one_cornering_stiffness(result):
+    """That of the tyre; the slope along the path of the disc is a step of the direct method."""
+    for said in (text.build_summary(result), text.build_explained(result)):
+        assert len(re.findall(r"\bC_alpha", said)) <= 1
 
 
 def test_terminal_text_is_ascii_and_fits_a_line(result):
