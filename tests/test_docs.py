@@ -9,7 +9,6 @@ import textwrap
 import tomllib
 from dataclasses import dataclass
 from importlib.util import find_spec
-from itertools import zip_longest
 from pathlib import Path
 
 import click
@@ -275,26 +274,30 @@ def test_every_block_that_is_not_run_says_why():
     assert not unexplained, f"<!-- not run: --> without a reason at {', '.join(unexplained)}"
 
 
-def wrong_in_command(line: str) -> str | None:
-    """What the command line ``mffit ...`` does not know, as a sentence; None if all of it exists."""
-    words = shlex.split(line, comments=True)[1:]
+def named_by(words: list[str]) -> tuple[click.Command, list[str]]:
+    """The command that the words after ``mffit`` name, and the words that follow it."""
     command: click.Command = commands
     while isinstance(command, click.Group) and words and not words[0].startswith("-"):
-        name = words.pop(0)
-        if name not in command.commands:
-            return f"{line}: there is no command {name}"
-        command = command.commands[name]
-    options = {
-        name: option for option in command.params for name in (*option.opts, *option.secondary_opts)
-    } | {"--help": None, "-h": None}
-    for word, following in zip_longest(words, words[1:]):
-        if not word.startswith("-"):
-            continue
-        if word not in options:
-            return f"{line}: {command.name} has no option {word}"
-        kind = getattr(options[word], "type", None)
-        if isinstance(kind, click.Choice) and following not in kind.choices:
-            return f"{line}: {word} does not take {following}"
+        if words[0] not in command.commands:
+            raise click.UsageError(f"there is no command {words[0]}")
+        command, words = command.commands[words[0]], words[1:]
+    return command, words
+
+
+def wrong_in_command(line: str) -> str | None:
+    """What the command line's own parser says against ``mffit ...``, as a sentence; None if it takes it.
+
+    Placeholders such as FILE and N stay what they are; only choices are looked at.
+    """
+    try:
+        command, words = named_by(shlex.split(line, comments=True)[1:])
+        context = click.Context(command)
+        given, _, _ = command.make_parser(context).parse_args(words)
+        for option in command.params:
+            if isinstance(option.type, click.Choice) and option.name in given:
+                option.type_cast_value(context, given[option.name])
+    except click.ClickException as error:
+        return f"{line}: {error.format_message()}"
     return None
 
 
@@ -321,6 +324,23 @@ def test_the_scripts_that_a_page_runs_are_in_the_repository(page):
     modules = set(re.findall(r"\bpython3? -m ((?:mffit|tir)[\w.]*)", shell + "\n" + text_of(page)))
     missing += sorted(module for module in modules if find_spec(module) is None)
     assert not missing, f"{name_of(page)} runs {', '.join(missing)}, which is not there"
+
+
+LOOSE_OPTION = re.compile(r"`(--[\w-]+)[^`]*`")
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if page.name != "changelog.md"], ids=name_of)
+def test_an_option_by_itself_is_one_of_a_command_that_its_paragraph_names(page):
+    """Paragraphs about a script of the tests have its options."""
+    wrong = []
+    for paragraph in re.split(r"\n\s*\n|\n\| ", FENCE.sub("", text_of(page))):
+        calls = [
+            shlex.split(call, comments=True)[1:] for call in re.findall(r"`(mffit [a-z][^`]*)`", paragraph)
+        ]
+        known = set().union({"--help"}, *(options_of(named_by(call)[0]) for call in calls))
+        if calls and ".py" not in paragraph:
+            wrong += [option for option in LOOSE_OPTION.findall(paragraph) if option not in known]
+    assert not wrong, f"{name_of(page)}: no command named there has {', '.join(wrong)}"
 
 
 def options_of(command: click.Command) -> set[str]:
