@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from mffit.fit.by_hand import HELD_BY_HAND
 from mffit.planning import constants
+from mffit.planning.additions import BY_ID
 from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT
 from mffit.planning.plan import Identified, NextRun, Plan
 from mffit.planning.runs import PlannedRun
@@ -14,6 +16,7 @@ from mffit.rounding import decimals_of
 
 EPS = DIRECT["epsilon_gamma"].ascii
 LOAD = CONDITIONS["Fz_N"]
+BACKWARD_CAMBER = BY_ID["backward-camber"]
 
 
 def title(run: PlannedRun) -> str:
@@ -78,16 +81,58 @@ def promise(plan: Plan) -> str:
     return f"The prediction is for {estimate}. All numbers{size} assume the noise of your present points."
 
 
+class StageStatus(NamedTuple):
+    """Coefficients of a stage of the fit, by what determines them."""
+
+    title: str
+    by_data: tuple[str, ...]
+    by_prior: tuple[str, ...]  #: as much by prior knowledge as by the data
+    by_hand: tuple[str, ...]
+    invisible: tuple[str, ...]  #: not moved by the data
+    missing: str  #: what the data lack for these; empty without them
+
+
+STATUSES = {
+    "by_data": "determined by the data",
+    "by_prior": "determined mostly by prior knowledge",
+    "by_hand": "held by hand",
+    "invisible": "not visible",
+}
+"""The statuses of a stage in words."""
+
+
+def statuses(found: Identified) -> dict[str, str]:
+    """The statuses that any stage has, in words."""
+    return {key: said for key, said in STATUSES.items() if any(getattr(row, key) for row in stages(found))}
+
+
+def stages(found: Identified) -> list[StageStatus]:
+    """The stages that have coefficients."""
+    rows = []
+    for row in found.cover:
+        invisible = tuple(name for name in row.held if name not in row.by_hand)
+        missing = "; ".join(reason for reason in row.missing if reason != HELD_BY_HAND)
+        by_data = tuple(name for name in row.free if name not in found.from_prior)
+        by_prior = tuple(name for name in row.free if name in found.from_prior)
+        if by_data or by_prior or row.by_hand or invisible:
+            rows.append(
+                StageStatus(
+                    row.title, by_data, by_prior, tuple(row.by_hand), invisible, missing if invisible else ""
+                )
+            )
+    return rows
+
+
 def identified_by_now(plan: Plan) -> list[str]:
-    """:func:`identified` of the sweeps of a plan's project."""
-    return identified(plan.identified)
+    """Sentences on the identifiability by the sweeps of a plan's project."""
+    return [*remarks(plan), *map(_of_stage, stages(plan.identified))]
 
 
-def identified(found: Identified) -> list[str]:
-    """Sentences on the identifiability by the present sweeps."""
+def remarks(plan: Plan) -> list[str]:
+    """What the matrix of stages does not say: errors that no run shows yet, correlations, the largest contribution."""
+    found = plan.identified
     return [
-        *_first_of_all(found),
-        *_coverage(found),
+        *_unseen_skew(plan),
         *(
             f"{a} and {b} are strongly correlated ({correlation:+.2f}): only their combination is determined."
             for a, b, correlation in found.correlated
@@ -96,36 +141,21 @@ def identified(found: Identified) -> list[str]:
     ]
 
 
-def _coverage(found: Identified) -> list[str]:
-    """Per stage, the coefficients that the data determine, those that the prior determines, and the held ones."""
-    out = []
-    for row in found.cover:
-        by_data = [name for name in row.free if name not in found.from_prior]
-        by_prior = [name for name in row.free if name in found.from_prior]
-        parts = []
-        if by_data:
-            parts.append(f"determined by the data: {' '.join(by_data)}")
-        if by_prior:
-            parts.append(f"determined mostly by prior knowledge: {' '.join(by_prior)}")
-        if row.by_hand:
-            parts.append(f"held by hand: {' '.join(row.by_hand)}")
-        invisible = [name for name in row.held if name not in row.by_hand]
-        if invisible:
-            missing = "; ".join(reason for reason in row.missing if reason != HELD_BY_HAND)
-            parts.append(f"not visible: {' '.join(invisible)} ({missing})")
-        if parts:
-            out.append(f"{row.title}: {'; '.join(parts)}.")
-    return out
+def _of_stage(row: StageStatus) -> str:
+    """A stage as a sentence."""
+    parts = [f"{said}: {' '.join(names)}" for key, said in STATUSES.items() if (names := getattr(row, key))]
+    return f"{row.title}: {'; '.join(parts)}{f' ({row.missing})' if row.missing else ''}."
 
 
-def _first_of_all(found: Identified) -> list[str]:
-    """A sentence on the backward camber sweep, the only run that detects a camber skew; empty if it exists."""
-    if found.unseen_skew is None:
+def _unseen_skew(plan: Plan) -> list[str]:
+    """A sentence on the only run that detects a camber skew, and its place in the list; empty if it exists."""
+    if plan.identified.unseen_skew is None:
         return []
+    places = [k for k, step in enumerate(plan.steps, 1) if step.run.addition is BACKWARD_CAMBER]
+    only = f"Only a {BACKWARD_CAMBER.title} shows it: {f'run {places[0]}' if places else 'none'} of the list."
     return [
-        "Run first a backward camber sweep at the nominal load, 11 angles: without one, a camber axis out of square by more "
-        f"than is declared goes unnoticed, because the fitted camber stiffness imitates it; 1 deg would change {EPS} by "
-        f"{found.unseen_skew:.2f}."
+        "A camber axis out of square by more than is declared goes unnoticed so far, because the fitted camber stiffness "
+        f"imitates it; 1 deg would change {EPS} by {plan.identified.unseen_skew:.2f}. {only}"
     ]
 
 

@@ -44,13 +44,19 @@ def plan(goal="eps_gamma", pecp1="direct", **changes):
 
 
 def test_what_the_sweeps_identify():
-    assert wording.identified(IDENTIFIED) == [
-        "Camber: determined by the data: PKY6; determined mostly by prior knowledge: PKY7; not visible: PEY4 (camber and slip).",
+    assert wording.identified_by_now(plan()) == [
         "PKY6 and PVY3 are strongly correlated (-0.99): only their combination is determined.",
         "The largest contribution to the uncertainty of eps_gamma (direct method) is camber alignment: 0.051.",
+        "Camber: determined by the data: PKY6; determined mostly by prior knowledge: PKY7; not visible: PEY4 (camber and slip).",
     ]
     nothing = Identified(cover=(), from_prior=(), correlated=(), budget=())
-    assert wording.identified(nothing) == []
+    assert wording.identified_by_now(plan(identified=nothing)) == []
+
+
+def test_every_coefficient_of_a_stage_has_one_status():
+    (camber,) = wording.stages(IDENTIFIED)
+    assert camber == ("Camber", ("PKY6",), ("PKY7",), (), ("PEY4",), "camber and slip")
+    assert camber._fields[1:5] == tuple(wording.STATUSES)
 
 
 def test_titles_name_load_camber_and_pressure():
@@ -117,8 +123,15 @@ def test_the_json_of_a_plan():
     assert (second["u_before"], second["u_after"], second["points"]) == (0.031, 0.0123, 30)
 
 
-def test_a_backward_camber_sweep_is_asked_for_first_where_nothing_shows_the_skew():
-    first = wording.identified(replace(IDENTIFIED, unseen_skew=0.16))[0]
-    assert first.startswith("Run first a backward camber sweep")
+def test_only_the_list_says_which_run_is_first():
+    """The sentence on the skew, which only a backward camber sweep shows, gives the place that the list has for it."""
+    unseen = replace(IDENTIFIED, unseen_skew=0.16)
+    first = wording.remarks(plan(identified=unseen))[0]
     assert "1 deg would change eps_gamma by 0.16" in first
-    assert not any("backward camber" in text for text in wording.identified(IDENTIFIED))
+    assert first.endswith("rolled backwards shows it: none of the list.")
+    backward = PlanStep(
+        PlannedRun(BY_ID["backward-camber"], 1400.0, points=[None] * 11), before=0.0123, after=0.01
+    )
+    listed = plan(identified=unseen, steps=(*plan().steps, backward))
+    assert wording.remarks(listed)[0].endswith("rolled backwards shows it: run 3 of the list.")
+    assert not any("backwards" in text for text in wording.remarks(plan()))

@@ -284,7 +284,7 @@ def test_a_flat_track_has_no_eps_gamma_to_plan_for():
 
 
 def test_the_plan_lists_what_the_sweeps_identify(plan):
-    said = " ".join(wording.identified(plan.identified))
+    said = " ".join(wording.identified_by_now(plan))
     assert "not visible: " in said
     assert "pressure" in said
 
