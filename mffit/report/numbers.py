@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pandas as pd
 
 from mffit.report import constants
@@ -18,19 +19,24 @@ def table(sheet: Sheet) -> str:
     """
     has_words = any(panel.y.words for panel in sheet.panels)
     parts = [_rows(panel, one, has_words) for panel in sheet.panels for one in panel.series]
-    found = pd.concat(parts, ignore_index=True)
-    kept = [name for name in COLUMNS if name in found and not (found[name] == "").all()]
-    return found[kept].to_csv(index=False, float_format="%.6g", lineterminator="\n")
+    columns = {}
+    for name in COLUMNS:
+        if any(name in part for part in parts):
+            column = np.concatenate([part.get(name, np.full(len(part["x"]), np.nan)) for part in parts])
+            if not np.all(column == ""):
+                columns[name] = column
+    return pd.DataFrame(columns).to_csv(index=False, float_format="%.6g", lineterminator="\n")
 
 
-def _rows(panel: Panel, series: DataSeries, has_words: bool) -> pd.DataFrame:
+def _rows(panel: Panel, series: DataSeries, has_words: bool) -> dict[str, np.ndarray]:
     columns = series.columns()
     every = max(1, -(-len(columns["x"]) // int(constants.POINTS_PER_SERIES)))
-    found = pd.DataFrame({name: values[::every] for name, values in columns.items()})
+    found = {name: values[::every] for name, values in columns.items()}
     if has_words:
-        found["y"] = [plain(_word(panel.y, y)) or f"{y:.6g}" for y in found["y"]]
+        words = [plain(_word(panel.y, y)) or f"{y:.6g}" for y in found["y"]]
+        found["y"] = np.array(words, dtype=object)
     texts = {"panel": panel.title, "series": series.name, "x axis": panel.x.label, "y axis": panel.y.label}
-    return found.assign(**{name: plain(text) for name, text in texts.items()})
+    return found | {name: np.full(len(found["x"]), plain(text), dtype=object) for name, text in texts.items()}
 
 
 def _word(axis: Axis, y: float) -> str:
