@@ -16,7 +16,6 @@ from mffit.suspicion.rule import Outcome, When
 from mffit.suspicion.rules import RULES
 from mffit.templates import environment
 from tir.constant import Count, Real, Series
-from tir.errors import listed
 
 WRITTEN = ("effects.md", "rig-errors.md", "suspicion.md")
 """Pages that stand in ``docs``; the build of the site adds the tables of ``constants.md``."""
@@ -28,7 +27,7 @@ def page(name: str) -> str:
     found.filters["short"] = "{:g}".format
     return found.get_template(f"{name}.j2").render(
         effects=CATALOG,
-        needs=lambda effect: listed([NEEDS[need] for need in effect.needs]),
+        needs=NEEDS,
         rig_errors=BY_NAME,
         by_place=groupby((*BEFORE, *AFTER), key=lambda error: error.place),
         without_place=[error for error in RIG_ERRORS if error.place is None],
