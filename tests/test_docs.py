@@ -335,7 +335,7 @@ def test_an_option_by_itself_is_one_of_a_command_that_its_paragraph_names(page):
     wrong = []
     for paragraph in re.split(r"\n\s*\n|\n\| ", FENCE.sub("", text_of(page))):
         calls = [
-            shlex.split(call, comments=True)[1:] for call in re.findall(r"`(mffit [a-z][^`]*)`", paragraph)
+            shlex.split(call, comments=True)[1:] for call in re.findall(r"`(mffit\s+[a-z][^`]*)`", paragraph)
         ]
         known = set().union({"--help"}, *(options_of(named_by(call)[0]) for call in calls))
         if calls and ".py" not in paragraph:
