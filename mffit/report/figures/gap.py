@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -42,6 +41,8 @@ FOUND = Look(colour=style.ACCENT, line="-", width=1.2)
 LEFT_OUT = Look(colour=style.INK, marker="D", size=3.0, hollow=True)
 LEAST_GAIN = 1.0
 """Where the logarithmic axis of gains begins."""
+HEIGHT_OF_NAME = 0.25
+"""Of a row whose name takes two lines [in]."""
 THRESHOLD = Look(colour=style.INK, line="--", width=1.0)
 
 
@@ -78,10 +79,7 @@ def gap_by_effect(diagnosis: Diagnosis) -> Sheet:
     steps = diagnosis.steps
     if len(steps) < 2:
         return NOTHING
-    names = [
-        labels.typeset(textwrap.shorten(f"{'' if k == 0 else '+ '}{one.name}", 34, placeholder="…"))
-        for k, one in enumerate(steps)
-    ]
+    names = [labels.typeset(f"{'' if k == 0 else '+ '}{one.name}") for k, one in enumerate(steps)]
     kinds = {one.effect.id: one.effect.kind for one in diagnosis.repaired}
     colours = [KIND_COLOURS.get(kinds.get(one.id, ""), style.MUTED) for one in steps]
     panels = []
@@ -89,11 +87,11 @@ def gap_by_effect(diagnosis: Diagnosis) -> Sheet:
         name, noise = channel.name, diagnosis.noise.typical(channel.name)
         sizes = np.array([one.gap.rms(name) for one in steps])
         left_out = np.array([one.held_out.rms(name) for one in steps])
-        low, high = 0.5 * min(noise, *sizes), 2.0 * max(noise, *sizes, *left_out)
+        high = 1.3 * max(noise, *sizes, *left_out)
         panels.append(
             Panel(
                 title=channel.known.mathtext,
-                x=Axis(label=f"rms misfit [{channel.known.unit}]", low=low, high=high, logarithmic=True),
+                x=Axis(label=f"rms misfit [{channel.known.unit}]", low=0.0, high=high),
                 y=listed(names),
                 series=[
                     Bars(name="all readings", lengths=sizes, colours=colours),
@@ -101,7 +99,7 @@ def gap_by_effect(diagnosis: Diagnosis) -> Sheet:
                 ],
                 guides=[Guide(axis="x", at=noise, look=THRESHOLD)],
                 notes=[
-                    Note(x=float(max(a, b)), y=k, text=number(a, digits=3))
+                    Note(x=float(max(a, b)), y=k, text=f"  {number(a, digits=3)}")
                     for k, (a, b) in enumerate(zip(sizes, left_out, strict=True))
                 ],
             )
@@ -113,7 +111,7 @@ def gap_by_effect(diagnosis: Diagnosis) -> Sheet:
     }
     return Sheet(
         rows=in_rows(panels, columns=2),
-        height=0.22 * len(steps) + 0.2,
+        height=HEIGHT_OF_NAME * len(steps) + 0.2,
         key=key | {"left-out sweeps": LEFT_OUT, "noise": THRESHOLD},
     )
 
@@ -220,7 +218,7 @@ def evidence(diagnosis: Diagnosis) -> Sheet:
     most = max((len(panel.y.words or {}) for panel in panels), default=1)
     present = {trial.effects[-1].kind for one in contests for trial in one.trials}
     key = {kind: Look(colour=colour, opacity=1.0) for kind, colour in KIND_COLOURS.items() if kind in present}
-    return Sheet(rows=in_rows(panels, columns=2), height=0.185 * most, key=key)
+    return Sheet(rows=in_rows(panels, columns=2), height=HEIGHT_OF_NAME * most, key=key)
 
 
 def _candidates(step: Contest, named: str) -> Panel:
@@ -228,13 +226,13 @@ def _candidates(step: Contest, named: str) -> Panel:
     rows = sorted(gained, key=lambda row: -row[0])[: constants.MOST_ROWS]
     gains = np.array([max(gain, LEAST_GAIN) for gain, _ in rows])
     passed = rows[0][0] > step.threshold
-    title = f"In the place of {named}" if named else "One effect alone"
+    title = f"Instead of {named}" if named else "One effect alone"
     title += "" if passed else ": nothing passes"
     colours = [KIND_COLOURS.get(effect.kind, style.MUTED) for _, effect in rows]
     return Panel(
-        title=labels.typeset(textwrap.shorten(title, 52, placeholder="…")),
+        title=labels.typeset(title),
         x=Axis(label="gain in log evidence", low=LEAST_GAIN, high=12.0 * max(10.0, *gains), logarithmic=True),
-        y=listed([labels.typeset(textwrap.shorten(effect.name, 31, placeholder="…")) for _, effect in rows]),
+        y=listed([labels.typeset(effect.name) for _, effect in rows]),
         series=[Bars(name="gain", lengths=gains, colours=colours)],
         guides=[Guide(axis="x", at=step.threshold, look=THRESHOLD)],
         notes=_distances([gain for gain, _ in rows], gains) if passed else [],

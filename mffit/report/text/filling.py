@@ -14,6 +14,7 @@ from mffit.report import constants, words
 from mffit.report.text import layout
 from mffit.rig_errors import meaning_of
 from mffit.templates import environment
+from mffit.viewer.bundle import script
 from tir.errors import counted
 from tir.parameters import BY_NAME
 
@@ -39,6 +40,7 @@ def templates(*, escaped: bool) -> Environment:
         "direct": DIRECT,
         "meaning_of": meaning_of,
         "most": int(constants.MOST_ROWS),
+        "script": script,
         "words": words,
     }
     return found

@@ -182,7 +182,7 @@ def test_unexplained_structure_is_at_the_top_with_its_place(unknown, tmp_path):
     assert unknown.unexplained
     assert unknown.answer is Answer.UNKNOWN
     alert = page.text.index("Something is missing that no effect of the library describes")
-    assert alert < page.text.index("Fy gap, rms")
+    assert alert < page.text.index("The gap, effect by effect")
     assert gap.framed(unknown, "Fy")[0] == unknown.unexplained_where[0]
 
 
@@ -234,12 +234,33 @@ def test_the_gap_is_shown_effect_by_effect(misaligned):
         assert panel.guides[0].at == misaligned.noise.typical(name)
 
 
-def test_a_first_picture_follows_from_the_answer(misaligned, unknown, clean, tmp_path):
-    for k, (found, first) in enumerate(
-        ((misaligned, "gap_by_effect"), (unknown, "gap_maps"), (clean, "curves"))
-    ):
+def test_one_box_has_the_verdict_and_pictures_follow_it(misaligned, unknown, clean, tmp_path):
+    for k, found in enumerate((misaligned, unknown, clean)):
         (tmp_path / str(k)).mkdir()
-        assert next(iter(written(found, tmp_path / str(k)).tables)) == first
+        pictures = [*written(found, tmp_path / str(k)).tables]
+        assert pictures[:2] == ["gap_by_effect", "curves"] if found.effects else pictures[0] == "curves"
+        html = (tmp_path / str(k) / "diagnosis.html").read_text(encoding="utf-8")
+        assert html.count('class="box ') == 1
+        assert html.index('class="box ') < html.index("<figure") < html.index("<table")
+
+
+def test_what_was_tried_is_a_table_that_a_click_sorts(misaligned, folder):
+    def column(place: int) -> list[str]:
+        return [
+            cell.text for cell in browser.find_elements("css selector", f".sortable td:nth-child({place})")
+        ]
+
+    with opened(folder / "diagnosis.html") as browser:
+        by_size = column(3)
+        assert len(by_size) == len(misaligned.limits)
+        heads = browser.find_elements("css selector", ".sortable .sort")
+        heads[0].click()
+        assert column(1) == sorted(column(1), key=str.lower)
+        heads[2].click()
+        assert column(3) == by_size
+        heads[2].click()
+        assert [float(text) for text in column(3)] == sorted(map(float, by_size), reverse=True)
+        assert console_errors(browser) == []
 
 
 def test_a_reader_sees_every_picture_on_screen_phone_and_paper(folder):
