@@ -45,12 +45,12 @@ ROWS = itemgetter(*range(len(FORCES)))
 def compile_kernels(*, turn_slip: bool | None = None, star: bool = False, limits: bool = False) -> None:
     """Compile the model to machine code, or load it from the cache, for all later calls in this process.
 
-    Without this, that happens by itself after some thousand scalar calls or some hundred thousand conditions; before, arrays use
-    numpy and scalar calls Python's floats.
+    Otherwise this happens automatically after some thousand scalar calls or some hundred thousand conditions; until then arrays
+    use numpy and scalar calls Python's floats.
 
     Parameters
     ----------
-    turn_slip : for calls with turn slip, without, or (None) both
+    turn_slip : True: for calls with turn slip; False: without; None: both
     star, limits : for calls with these switches
 
     Raises
@@ -158,9 +158,9 @@ def function_of(tyre: TyreRecord, switches: Switches, outputs: tuple[str, ...] =
 def _counted(
     prepared: dict[Any, Any], run: Function, values: dict[str, float], switches: Switches
 ) -> Function:
-    """The function for plain numbers, until the kernel is loaded; then it puts the kernel in its place among ``prepared``.
+    """The function for plain numbers, which replaces itself in ``prepared`` by the kernel once that is loaded.
 
-    As the kernel, it raises TypeError for arguments that are no :data:`~tir.codegen.cpython.SCALARS`.
+    Like the kernel, it raises TypeError for arguments that are not :data:`~tir.codegen.cpython.SCALARS`.
     """
     meter = kernels.meter("one", switches)
 
@@ -179,7 +179,7 @@ def _counted(
 
 
 def _kernel_for(tyre: TyreRecord, n: int, switches: Switches) -> Function | None:
-    """The kernel for arrays bound to the tyre, cached in the tyre; None if it is not loaded or a parameter is no real number."""
+    """The array kernel bound to the tyre, cached in the tyre; None if it is not loaded or a parameter is not a real number."""
     bound: Function | None = tyre.prepared.get(("batch", switches))
     if bound is not None:
         return bound

@@ -25,7 +25,7 @@ from tir.tyre import Tyre
 
 @dataclass(frozen=True, slots=True)
 class PlausibleRule:
-    """A condition under which the value of a key is wrong, independent of all other values."""
+    """A condition under which the value of a key is wrong, whatever the other values are."""
 
     keys: tuple[str, ...]
     broken: Callable[[float], bool]
@@ -351,7 +351,7 @@ def _spin(tyre: Tyre) -> Iterator[Problem]:
 
 
 def _known_default(tyre: Tyre, name: str) -> bool:
-    """Whether a file for turn slip off says itself that the coefficient is a default, as after an export."""
+    """Whether a file for turn slip off marks the coefficient as a default, as after an export."""
     return not tyre.turn_slip and tyre.status.get(name, "").startswith("default")
 
 

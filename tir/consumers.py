@@ -15,7 +15,7 @@ from tir.targets import Target
 from tir.units import KINDS, known_word
 
 FIRST_OF_MODEL = 3
-"""Keys of [MODEL] that a program uses that reads by position: version, side, reference speed."""
+"""Keys of [MODEL] that matter to a program that reads by position: version, side, reference speed."""
 
 
 def target_problems(tyre: TyreRecord, target: Target) -> Iterator[Problem]:

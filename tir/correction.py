@@ -44,13 +44,13 @@ COUNTED = (
     "NOMPRES",
     *(row.name for row in TABLE if row.section.endswith("_COEFFICIENTS") and not row.scaling),
 )
-"""What a table belongs to; modes, ranges and scaling factors may differ in a simulation."""
+"""Values of the file that a table holds for; modes, ranges and scaling factors may differ in a simulation."""
 FILE, COEFFICIENTS, PATH, FADING = "file", "coefficients", "phi_t_per_m", "fading of"
-"""Words at the head of the table."""
+"""Names of the comment lines above the table."""
 
 
 def digest(values: Mapping[str, Any]) -> str:
-    """Of the coefficients of a file."""
+    """Digest of the coefficients of a file."""
     text = "\n".join(f"{name} {float(values[name])!r}" for name in COUNTED)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
@@ -69,7 +69,7 @@ class Correction(ReadOnlyArrays):
     lowest: float = field(compare=False)  #: load below which the model error falls with the load [N]
 
     def added(self, forces: Forces, inputs: Sequence[Any], *, limits: bool = False) -> Forces:
-        """The forces of the formula with what it misses, at the ``inputs`` of the call, in the order of ``INPUTS``.
+        """Forces of the formula plus the model error, at the ``inputs`` of the call, in the order of ``INPUTS``.
 
         With ``limits`` the inputs are held to the file's ranges; then the model error fades outside of the grid only towards a
         wheel in the air and over a longitudinal slip that nobody measured. Raises TirError if an input is not a real number.
@@ -125,7 +125,7 @@ class Correction(ReadOnlyArrays):
         return np.asarray(np.exp(-0.5 * np.sum((beyond / self.fading[:, :, None]) ** 2, axis=1)))
 
     def _once(self, at: Sequence[float], *, fades: bool) -> np.ndarray:
-        """The miss (channels,) of one condition, in a tenth of the time of arrays."""
+        """Model error (channels,) at one condition, ten times as fast as with arrays."""
         cells, shares, beyond = [], [], []
         for x, known in zip(at, self._lists, strict=True):
             cell = min(max(bisect_right(known, x) - 1, 0), len(known) - 2)
@@ -195,7 +195,7 @@ def read_correction(path: str | Path, values: Mapping[str, Any]) -> Correction:
 def _correction(
     text: str, head: Mapping[str, str], heading: list[str], rows: np.ndarray, nominal: float
 ) -> Correction:
-    """The record of a table, of ``nominal`` load if it has none; raises ValueError or LookupError if it is not whole."""
+    """The record of a table, of ``nominal`` load if it has none; raises ValueError or LookupError if it is incomplete."""
     axes = [name for name in AXES if name in heading]
     names = [name for name in MISSED if f"{FADING} {name}" in head]
     nodes = [np.unique(rows[:, heading.index(name)]) for name in axes]

@@ -73,7 +73,7 @@ def followed(
 
 
 def _growth(row: Parameter, values: Mapping[str, Any]) -> float:
-    """The tyre's measures over those of the table's tyre, for the unit of a parameter; 1 for a measure that is no size."""
+    """The tyre's measures over those of the table's tyre, for the unit of a parameter; 1 if unusable."""
     if row.section == OF_PROGRAMS:
         return 1.0
     growth = 1.0

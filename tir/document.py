@@ -24,9 +24,9 @@ NUMBER = re.compile(
 KEY_ALONE = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:=\s*)?")
 VALUE_ALONE = re.compile(r"(\s*=?[^\S\r\n]*)(.*)", re.DOTALL)
 CONTINUED = "!>"
-"""Begins a line that continues the comment line above."""
+"""Start of a line that continues the comment line above."""
 BYTE_ORDER_MARKS = {"utf-16-le": codecs.BOM_UTF16_LE, "utf-16-be": codecs.BOM_UTF16_BE}
-"""Bytes with which a file of an encoding begins, which its text does not hold."""
+"""Byte order mark of each encoding that has one."""
 NO_TEXT = {
     b"MATLAB 5.0": "a MATLAB file",
     b"\x89HDF": "a MATLAB 7.3 or other HDF5 file",
@@ -35,18 +35,18 @@ NO_TEXT = {
     b"\x1f\x8b": "a compressed file",
     b"%PDF": "a PDF",
 }
-"""What a file is that begins with these bytes."""
+"""Other kinds of file by their first bytes."""
 NOT_THE_FILE = {
     b"<!doctype": "a web page about the file: download the file itself, such as by Raw on its page",
     b"<html": "a web page about the file: download the file itself, such as by Raw on its page",
     b"version https://git-lfs": "a pointer of Git LFS: fetch the file itself by git lfs pull",
 }
-"""What stands in for a file that was not fetched, by its first bytes in lower case, and what to do."""
+"""Placeholders of files that were not downloaded, by their first bytes in lower case, and the remedy."""
 AS_TEXT = (
     "write each coefficient on a line of its own, such as PCY1 = 1.3, with UNLOADED_RADIUS and FNOMIN, and FITTYP = 62 for MF "
     "6.2; or in Python tir.Tyre.from_values({'PCY1': 1.3, ...}).write('tyre.tir')"
 )
-"""What to do with coefficients that are not in a property file."""
+"""The remedy for coefficients that are not in a property file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ class FileLine:
 
     @property
     def apart(self) -> bool:
-        """Whether the key stands on a line above, alone."""
+        """Whether the key is on a line above, alone."""
         return bool(self.key) and ENTRY.match(self.text) is None
 
     def with_value(self, value: str) -> FileLine:
@@ -187,7 +187,7 @@ def read_document(path: str | Path) -> Document:
 
 
 def _pipe_content(path: Path) -> bytes:
-    """What is written into a named pipe; a TirError if nothing writes into it, because opening it would wait for ever."""
+    """Content of a named pipe. Raises TirError if nothing writes to it, because opening it would block."""
     with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as stream:
         first = stream.raw.read(1)  # None: a program has opened it and has not written yet
         if first == b"":
@@ -270,7 +270,7 @@ def unquoted(text: str) -> str:
 
 
 def number_of(text: str) -> float | None:
-    """The number that a text states, with Fortran's exponents too; None if it is none."""
+    """The number that a text states, with Fortran's exponents too; None if it is not a number."""
     if not NUMBER.fullmatch(text):
         return None
     return float(re.sub(r"(?<=[\d.])[dD]", "e", text))

@@ -42,7 +42,7 @@ class Condition:
 
 
 def _sign(peak: float) -> float:
-    """The sign of a peak factor: a negative one turns the slope factor round too, and the curve stays."""
+    """The sign of a peak factor: a negative one also reverses the slope factor, so the curve stays."""
     return -1.0 if peak < 0.0 else 1.0
 
 
@@ -136,7 +136,7 @@ OF_THE_SIDE_FORCE = ("PDY1", "PKY1", "PKY3")
 def over_the_range(tyre: TyreRecord) -> Iterator[Problem]:
     """Problems for the conditions that the tyre violates within its ranges or just outside.
 
-    An error in the default of a range that the file does not state is a warning: nobody said that the tyre reaches so far.
+    Within the default of a range that the file does not state, an error counts as a warning.
     """
     inside, stated = box(tyre), _stated(tyre)
     reach = constants.JUST_OUTSIDE * (inside[1] - inside[0])

@@ -36,7 +36,7 @@ class TirError(Exception):
 
 
 class TirWarning(UserWarning):
-    """Something about a tyre that is in use and gives forces, but probably not those that were meant."""
+    """A tyre gives forces, but probably not those that were meant."""
 
 
 @dataclass(frozen=True, slots=True)

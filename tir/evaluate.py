@@ -53,7 +53,7 @@ def evaluate(
 
 
 def unchecked(p: Any, at: OperatingCondition, switches: Switches) -> tuple[Forces, State]:
-    """As :func:`evaluate`, all given; what divides by a parameter that is 0 is infinite, NaN or an ArithmeticError."""
+    """As :func:`evaluate`, all given, unchecked: a divisor that is 0 gives infinity, NaN or an ArithmeticError."""
     if isinstance(at.pressure, float | int):  # Python's own numbers raise at 0 ** -0.4, numpy's do not
         at = at._replace(pressure=np.float64(at.pressure))
     backwards = np.real(at.Vx) < 0.0

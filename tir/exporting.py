@@ -55,7 +55,7 @@ class ExportedTyre(NamedTuple):
     turned: tuple[Tunable, ...]  #: what the user of the code may change
 
     def program(self, outputs: tuple[str, ...], *, tuned: bool = True) -> Program:
-        """The program of some outputs: what can be turned is a symbol, unless not ``tuned``, and any other value a number."""
+        """The program of some outputs: with ``tuned`` what can be turned is a symbol, and every other value a number."""
         return trace(self.switches, outputs, self.parameters if tuned else self._numbers)
 
     def parameters(self, graph: Graph) -> dict[str, Any]:
@@ -94,7 +94,7 @@ def exported(
     """A tyre for code with these outputs; ``tunable`` are the numbers that the user may change, by default all that can be.
 
     ``switches`` are turn_slip (None: as the file's USE_MODE says), star and limits. Warns of doubtful coefficients of turn slip,
-    and of a correction, which stays behind. Raises TirError if a value is not finite, an output divides by one that is 0, or a
+    and of a correction, which is not exported. Raises TirError if a value is not finite, an output divides by one that is 0, or a
     name of ``tunable`` cannot be turned.
     """
     tyre.leave_correction("exported code")

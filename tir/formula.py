@@ -1,4 +1,4 @@
-"""Which formula a property file is of: its FITTYP says so, else its keys, else its PROPERTY_FILE_FORMAT."""
+"""The formula of a property file: by its FITTYP, else its keys, else its PROPERTY_FILE_FORMAT."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ NEW_KEYS = frozenset(
 )
 """Coefficients of MF 6 that MF 5.2 and PAC2002 lack. Those of turn slip, of pressure and of Mx are in PAC2002 too."""
 NEUTRAL = {"PKY4": 2.0}
-"""Values with which a coefficient says nothing, where that is neither 0 nor, for a scaling factor, 1."""
+"""Values at which a coefficient has no effect, where that is neither 0 nor, for a scaling factor, 1."""
 PRESSURES = frozenset({"NOMPRES", "INFLPRES"})
-"""Keys that MF 6.1 introduced, and that old files may have got for a program that asks for them."""
+"""Keys of MF 6.1 that old files may have too, for programs that require them."""
 MOTORCYCLE_TAG = re.compile(r"(PAC|MF)_?MC")
 OLD_TAG = re.compile(r"PAC2002|MF_?05|MF_?TYRE$|(^|\D)5(_?[012])?$")
 NEW_TAG = re.compile(r"(^|\D)6(_?[012])?$")
@@ -82,7 +82,7 @@ def is_old(path: str | Path) -> bool:
 
 
 def _acting(group: Collection[str], stated: Mapping[str, str]) -> set[str]:
-    """Keys of a group with values that act; files are completed with others for programs that ask for every key."""
+    """Keys of a group whose values have an effect; others may only be there for programs that require every key."""
     values = {key: number_of(stated[key]) for key in group if key in stated}
     neutral = {key: NEUTRAL.get(key, 1.0 if key.startswith("L") else 0.0) for key in values}
     return {key for key, value in values.items() if value is not None and value != neutral[key]}

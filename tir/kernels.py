@@ -21,7 +21,7 @@ WORTH_LOADING = {
     "batch": int(constants.CONDITIONS_WORTH_LOADING),
 }
 WITHOUT_KERNEL = (TirError, ImportError, OSError, RuntimeError)
-"""What a broken llvmlite or a full disk raises; nobody asked for the kernel, so the calls go on without it."""
+"""What a broken llvmlite or a full disk raises; calls then continue without the kernel, which nobody requested."""
 
 
 class Meter:
@@ -44,7 +44,7 @@ class Meter:
         return self.loaded
 
     def load(self) -> None:
-        """Load or compile the kernel now; calls that were counted change over to it."""
+        """Load or compile the kernel now; counted calls then use it."""
         self.loaded = kernel.load(self.kind, self.switches)
         self.left = 0.0
 

@@ -14,7 +14,7 @@ BLOCK = tuple(row for row in TABLE if row.section == TURN_SLIP and row.files == 
 """The coefficients of turn slip."""
 
 INSIDE = ("tir.", "functools")
-"""Modules that a warning is not meant for: this package, and what keeps the values of its properties."""
+"""Modules skipped when a warning is located: this package, and the cache of its properties."""
 
 
 def asks_for_turn_slip(values: Mapping[str, Any]) -> bool:

@@ -1,4 +1,4 @@
-"""What a property file means: Document and table to the record of a tyre."""
+"""Interpretation of a property file: from its document and the table to the record of a tyre."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Kind = TypeVar("Kind", bound=TyreRecord)
 OF_PROGRAMS = {"SWITCH_INTEG"} | {key for target in TARGETS.values() for key in target.more}
 """Keys of [MODEL] that control how a program runs the model; they are not parameters of the tyre."""
 LONG_NAME, LIKENESS = 6, 0.85
-"""Characters from which a name without a number is like few others, and the likeness that makes another one a misspelling."""
+"""Length from which a name without a number is compared with others, and the likeness that counts as a misspelling."""
 LARGEST = float(np.finfo(np.float32).max)
 """Largest size of a value: simulation programs have no larger one in single precision, and squares of it are finite here."""
 ESSENTIAL = ("UNLOADED_RADIUS", "FNOMIN")
@@ -76,7 +76,7 @@ def described(kind: type[Kind], document: Document, lacking: Mapping[str, float 
 
 
 class StatedValues(NamedTuple):
-    """What the lines of a document say, each by key."""
+    """The content of a document by key."""
 
     values: dict[str, Any]  #: in the units of the table
     status: dict[str, str]  #: origin of a value
@@ -116,7 +116,7 @@ def add_given(
 ) -> frozenset[str]:
     """Add given values of keys that a file lacks; returns their names. A value that the file has itself stays, with a problem.
 
-    Raises TirError if a name is unknown, or a value is no finite number where one is needed.
+    Raises TirError if a name is unknown, or a value is not finite where a number is needed.
     """
     added = TyreRecord.from_values(given).present - values.keys()
     for name, value in given.items():
@@ -216,7 +216,7 @@ OTHER_FORMULAS: Mapping[str, str] = {
 }
 """By the kind of a formula that is not read as MF 6, why its file cannot be used, and what to do."""
 STRANGE = ("motorcycle", "other")
-"""Those that are not converted to MF 6 either."""
+"""Kinds that are not converted to MF 6 either."""
 
 
 def refuse_formulas(formula: Formula, document: Document, kinds: Collection[str] = STRANGE) -> None:

@@ -102,7 +102,7 @@ class TyreRecord:
         return asks_for_turn_slip(self.values)
 
     def turns(self, turn_slip: bool | None, phi_t: Any) -> bool:
-        """Whether spin acts in a call with these arguments; warns once if it does so unasked by doubtful coefficients."""
+        """Whether spin acts in a call with these arguments; warns once if it does so by default with doubtful coefficients."""
         if turn_slip is not None:
             return bool(turn_slip)
         return (phi_t is not None or self.turn_slip) and self._on
@@ -136,7 +136,14 @@ class TyreRecord:
         measured: Mapping[str, Quantity] = EMPTY,
         provenance: Mapping[str, str] = EMPTY,
     ) -> Self:
-        """A copy with origins of values, measured quantities and provenance added."""
+        """A copy with origins of values, measured quantities and provenance added, which a written file states in comments.
+
+        Parameters
+        ----------
+        status : origin of a value, by name of the parameter
+        measured : measured or fitted quantities by name
+        provenance : texts by key, such as the date
+        """
         return replace(
             self,
             status=MappingProxyType({**self.status, **status}),
@@ -145,10 +152,10 @@ class TyreRecord:
         )
 
     def with_correction(self, path: str | Path) -> Self:
-        """A copy whose calls add the model error, from the table that a build wrote beside the file.
+        """A copy whose calls add the model error, from the table that a build wrote next to the file.
 
         The table is linear in each input between its nodes. Beyond them the model error fades to zero: below the lowest load
-        with the load, over a longitudinal slip that nobody measured with the combined slip. On another path than that of the
+        with the load, over unmeasured longitudinal slip with the combined slip. On another path than that of the
         measurement it is known in part, as in ``mffit predict``; with ``limits=True`` it fades with load and longitudinal slip
         alone. Nothing is added to a wheel in the air or rolling backwards. A changed value keeps the table. Property files,
         exports, ``state`` and ``tir.transient`` do not have it; the first two and the last warn of it.
@@ -160,7 +167,7 @@ class TyreRecord:
         Raises
         ------
         TirError
-            If the table cannot be read, is not whole, or belongs to a file of other coefficients.
+            If the table cannot be read, is incomplete, or belongs to a file of other coefficients.
         """
         return replace(self, correction=read_correction(path, self.values))
 

@@ -21,7 +21,7 @@ ONLY_62 = tuple(row.name for row in TABLE if row.files == "62")
 
 @dataclass(frozen=True, slots=True)
 class TargetRule:
-    """Something that a program does with values that others take differently; found in its public source or manual."""
+    """A program's own treatment of some values, found in its public source or manual."""
 
     name: str  #: the key at fault
     concerns: Callable[[TyreRecord], Any]  #: if this is words, they are ``{said}`` in the sentence

@@ -68,7 +68,7 @@ def step(
     phi_t : turn slip [1/m], without lag
     p : inflation pressure [Pa], default INFLPRES
     damping : of the contact at standstill [Ns/m], which fades out towards VXLOW; without it a car that has stopped
-        oscillates on its carcass for ever
+        keeps oscillating on its carcass
     turn_slip, limits : as in a call of the tyre
 
     Returns
@@ -79,7 +79,7 @@ def step(
     Raises
     ------
     TirError
-        If ``dt`` is negative or NaN, or a parameter is no real number.
+        If ``dt`` is negative or NaN, or a parameter is not a real number.
     """
     if not dt >= 0.0:
         raise TirError(f"the step dt is {dt:g} s, but time only runs forwards: give 0 or more")
@@ -103,7 +103,7 @@ def forces(
     turn_slip: bool | None = None,
     limits: bool = False,
 ) -> Forces:
-    """The forces of a deflected contact; arguments as in :func:`step`."""
+    """The forces [N] and moments [Nm] of a deflected contact; arguments as in :func:`step`."""
     lag, inputs = _lag(tyre, (Fz, Vx, Vsx, Vsy, gamma, phi_t, p, damping), turn_slip, limits)
     return _forces(lag, contact, inputs)
 

@@ -173,7 +173,13 @@ class Tyre(TyreRecord):
         star: bool = False,
         limits: bool = False,
     ) -> State:
-        """The other results at the condition: stiffnesses, radius, trail, spin; arguments as in a call."""
+        """The other results at the condition: stiffnesses, radius, trail, spin; arguments as in a call.
+
+        Returns
+        -------
+        State
+            Floats or arrays as in a call; units with its fields.
+        """
         inputs = (
             Fz,
             alpha,
@@ -236,7 +242,7 @@ def _unchanged(name: str = "", value: Any = None) -> str:
 
 
 def read(path: str | Path, **lacking: float | str) -> Tyre:
-    """The tyre of a ``.tir`` file of MF 6.1 or 6.2.
+    """The tyre of a ``.tir`` file of MF 6.0, 6.1 or 6.2.
 
     Units other than SI are converted, and missing keys take the defaults of the table. ``Tyre.problems`` lists
     everything unusual with its line.

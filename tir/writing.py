@@ -197,7 +197,7 @@ def _with_structured_comments(document: Document, tyre: TyreRecord) -> Document:
 
 
 def content(tyre: TyreRecord, target: str | None = None) -> tuple[str, str]:
-    """Text and encoding of the tyre's file; see :meth:`tir.Tyre.text`. A correction stays behind, with a warning."""
+    """Text and encoding of the tyre's file; see :meth:`tir.Tyre.text`. A correction is not written, with a warning."""
     tyre.leave_correction("a property file")
     if target is None and tyre.document is not None:
         document = merged(tyre, tyre.document)

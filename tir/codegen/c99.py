@@ -23,7 +23,7 @@ HEADERS = {
     "math", "setjmp", "signal", "stdalign", "stdarg", "stdatomic", "stdbool", "stddef", "stdint", "stdio",
     "stdlib", "stdnoreturn", "string", "tgmath", "threads", "time", "uchar", "wchar", "wctype",
 }  # fmt: skip
-"""Headers of the standard library: a file of the same name beside the source would be included instead."""
+"""Headers of the standard library: a file of the same name next to the source would be included instead."""
 C = SourceDialect(
     {
         **COMMON,
@@ -146,7 +146,7 @@ class _Text(NamedTuple):
 
 
 def _add_tuning(text: _Text, made: ExportedTyre) -> None:
-    """What can be turned, its values in the file, and the functions that take it."""
+    """The tunable numbers, their values in the file, and the functions that take them."""
     text.record("tuning", {one.name: one.description for one in made.turned})
     head = f"{text.name}_tuning {text.name}_as_in_file(void)"
     text.header.append(f"{head};")
@@ -183,7 +183,7 @@ def taken(name: str) -> bool:
 
 
 def _openings(name: str, made: ExportedTyre) -> tuple[list[str], list[str]]:
-    """What header and source begin with."""
+    """First lines of header and source."""
     guard = f"{name.upper()}_H"
     first, second = made.opening
     header = [

@@ -32,7 +32,7 @@ def casadi_function(
 ) -> Any:
     """The tyre as a ``casadi.Function`` of Fz, alpha, gamma, kappa, phi_t, Vx, p (ISO-W, SI, radians).
 
-    An input that a call by name omits has the value of an FMU's start: FNOMIN, LONGVL, INFLPRES, the factors of the file, else 0.
+    An input that a call by name omits has the start value of an FMU: FNOMIN, LONGVL, INFLPRES, the factors of the file, else 0.
 
     Parameters
     ----------

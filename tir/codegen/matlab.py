@@ -21,14 +21,14 @@ MORE = {
     "mu_y": "lateral friction coefficient [-]",
     "residual_torque": "residual torque, part of Mz [Nm]",
 }
-"""States that the columns of MFeval have besides those of other exports."""
+"""States in MFeval's columns, in addition to those of other exports."""
 STATE_TEXTS = {name: OUTPUT_TEXTS[name] for name in STATES} | MORE
 COLUMNS = (
     "r.Fx", "r.Fy", "r.Fz", "r.Mx", "r.My", "r.Mz", "in(:, 2)", "in(:, 3)", "in(:, 4)", "in(:, 5)", "in(:, 6)", "p",
     "s.Re", "", "", "s.trail", "s.mu_x", "s.mu_y", "s.omega", "", "", "s.residual_torque", "abs(s.K_xk) ./ s.sigma_x",
     "abs(s.K_ya) ./ s.sigma_y", "", "s.K_ya", "s.sigma_x", "s.sigma_y", "", "s.K_xk",
 )  # fmt: skip
-"""MFeval's outputs in their order; empty what the model does not compute."""
+"""MFeval's outputs in their order; empty where the model does not compute one."""
 KEYWORDS = {
     "break", "case", "catch", "classdef", "continue", "else", "elseif", "end", "for", "function", "global", "if", "otherwise",
     "parfor", "persistent", "return", "spmd", "switch", "try", "while",
@@ -62,7 +62,7 @@ MATLAB = SourceDialect(
 
 
 PRAGMA = ("", "%#codegen")
-"""What MATLAB's checks of code generation look for; not in front of the help text, which Octave would not find."""
+"""Marker for MATLAB's code generation; it follows the help text, which Octave would not find behind it."""
 VARIABLE = re.compile(r"\bv\d+\b")
 
 

@@ -19,9 +19,9 @@ INPUTS = OperatingCondition._fields
 ORDER = ("Fz", "kappa", "alpha", "gamma", "phi_t", "Vx", "pressure")
 """Inputs in the order that is usual in other programs."""
 CALLED = {"pressure": "p"}
-"""Inputs that calls and exported code name otherwise than the equations, where p is the parameters."""
+"""Inputs with other names in calls and exported code than in the equations, where p is the parameters."""
 LOADED = "RL"
-"""The loaded radius, which is no state of the model because many files lack what it depends on."""
+"""The loaded radius, which is not a state of the model because many files lack what it depends on."""
 NUMBERS = tuple(row.name for row in TABLE if row.kind == "number")
 
 

@@ -106,7 +106,7 @@ def _tangent_in_vectors() -> bool:
 class Replay(NamedTuple):
     """Operations on a list of places: the symbols first, then the constants, then the results of operations.
 
-    A place is used again when nothing needs what is in it any more, so that large arrays stay in the processor's cache.
+    Places are reused once their content is no longer needed, so that large arrays stay in the processor's cache.
     """
 
     symbols: tuple[str, ...]  #: names of the values that a run needs
@@ -211,7 +211,7 @@ def allocated(
     place: dict[Any, int],
     kind: Callable[[Any], bool] = lambda key: False,
 ) -> int:
-    """Number of places, after giving the result of every operation a place that is free by then.
+    """Allocate a place for each result, reusing free ones; return the number of places.
 
     ``results`` and ``arguments`` are the keys of what the operations compute and use; what is in ``kept`` is never replaced.
     Keys of a different ``kind`` never share a place.

@@ -76,7 +76,7 @@ def sliding(sigma, mu, Fz, stiffness):
 
 
 def no_growth(x, before, limit):
-    """x, held to the limit or, if that is more, to where it was before."""
+    """x, held to the limit or, if larger, to its size before."""
     most = select(absolute(before) > limit, absolute(before), limit)
     return select(x > most, most, select(x < -most, -most, x))
 

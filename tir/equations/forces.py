@@ -21,11 +21,11 @@ class Forces(NamedTuple):
 
 
 class State(NamedTuple):
-    """Everything else that the model knows of the operating condition."""
+    """All other results of the model at the operating condition."""
 
     K_xk: Any  #: longitudinal slip stiffness [N]
-    K_ya: Any  #: cornering stiffness at this load, camber, pressure and spin [N/rad]
-    K_yg0: Any  #: camber stiffness at zero camber, normal mode [N/rad]
+    K_ya: Any  #: cornering stiffness at this load, camber, pressure and spin [N/rad], negative for a normal tyre
+    K_yg0: Any  #: camber stiffness at zero camber, normal mode [N/rad], negative for a normal tyre
     mu_x: Any  #: longitudinal friction coefficient [-]
     mu_y: Any  #: lateral friction coefficient [-]
     sigma_x: Any  #: longitudinal relaxation length [m]
@@ -39,7 +39,7 @@ class State(NamedTuple):
     eps_gamma: Any  #: camber reduction factor [-]
     phi: Any  #: total spin [1/m]
     S_Hyphi: Any  #: shift of the side-force curve by spin [rad]
-    zeta0: Any
+    zeta0: Any  #: to zeta8: factors by which spin changes the Magic Formula [-]; 1 without turn slip
     zeta1: Any
     zeta2: Any
     zeta3: Any
@@ -51,7 +51,7 @@ class State(NamedTuple):
 
 
 class Wheel(NamedTuple):
-    """What limits do not change, or change otherwise than in the Magic Formula proper."""
+    """Inputs that limits leave unchanged, or change in another way than those of the Magic Formula."""
 
     overturning: Any  #: load for Mx [N]
     rolling: Any  #: load for My [N]
@@ -68,7 +68,7 @@ def evaluate(p, q: Inputs, wheel: Wheel, with_turn_slip: bool) -> tuple[Forces, 
     p : object with the parameter names of the file as attributes
     q : normalised inputs, inside the limits
     wheel : what the moments of overturning and rolling resistance and the speed of rotation take
-    with_turn_slip : whether spin acts through the zeta factors (design of USE_MODE's units digit 5) or not at all
+    with_turn_slip : whether spin acts through the zeta factors (units digit 5 of USE_MODE)
     """
     K_xk = stiffness.longitudinal_slip_stiffness(p, q)
     K_yg0 = stiffness.camber_stiffness(p, q)

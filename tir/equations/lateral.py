@@ -48,7 +48,7 @@ def pure(p, q: Inputs, gamma, spin: Spin, grip: SideGrip) -> SideForce:
 
 
 def camber_force(p, q: Inputs, gamma, zeta2=1.0):
-    """S_Vygamma [N]: the part of the vertical shift that camber makes; 4.E28."""
+    """S_Vygamma [N]: the part of the vertical shift that camber causes; 4.E28."""
     return q.Fz * (p.PVY3 + p.PVY4 * q.dfz) * gamma * p.LKYC * p.LMUY * zeta2  # 4.E28
 
 

@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 from tir.equations.elementary import TINY, absolute, real, select, sqrt, tan
 
 STEPS = 5
-"""Newton's steps to a loaded radius, from that of the upright wheel without other forces."""
+"""Number of Newton steps to a loaded radius, from that of the upright wheel without other forces."""
 
 
 class Rolling(NamedTuple):
-    """A wheel on its way, without load and radius."""
+    """State of a rolling wheel without load and radius."""
 
     Fx: Any  #: [N], ISO-W
     Fy: Any  #: [N]

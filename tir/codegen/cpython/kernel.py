@@ -35,7 +35,7 @@ SOURCES = (
 )
 """Files that the machine code depends on."""
 LANES = int(VECTOR_LANES)
-"""Conditions that a call of the kernel for arrays has at least."""
+"""Smallest number of conditions in a call of the kernel for arrays."""
 KINDS = ("batch", "one")
 FASTCALL = 0x80
 """CPython's METH_FASTCALL."""
@@ -74,7 +74,7 @@ class _Definition(ctypes.Structure):
 def obstacle() -> str | None:
     """Why no machine code can be compiled and called here, with what to do; None if it can.
 
-    The entry in C was never tried without CPython's global lock.
+    Not tested without CPython's global lock.
     """
     from sysconfig import get_config_var  # imported late, so that import tir is quick
 
@@ -199,7 +199,7 @@ def _read(path: Path) -> bytes | None:
 
 
 def _write(path: Path, code: bytes) -> None:
-    """Write the file in one step, because several processes may write it at the same time; the code serves without it, too."""
+    """Write the file in one step, because several processes may write it at the same time; a failure is ignored."""
     temporary = ""
     try:
         handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".part")
