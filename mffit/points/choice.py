@@ -67,10 +67,10 @@ def _judged(sweep: Sweep, found: list[Stretch]) -> list[Stretch]:
         elif stretch.kind == PLATEAU:
             tried.append(settled(stretch, settings, responses))
         else:
-            rolled = _rolled_in(sweep, stretch)
-            if rolled.begin > stretch.begin:
-                tried.append(Stretch(stretch.begin, rolled.begin, ROLLING_IN, MOVE))
-            tried.append(rolled)
+            begin = min(_rolled_from(stretch.begin, settings, stretch.end), stretch.end - 1)
+            if begin > stretch.begin:
+                tried.append(Stretch(stretch.begin, begin, ROLLING_IN, MOVE))
+            tried.append(stretch._replace(begin=begin))
     return tried
 
 
@@ -81,15 +81,6 @@ def _rolled_from(begin: int, settings: SteadySettings, end: int) -> int:
     speed = float(np.median(settings.V[begin:end]))
     seconds = constants.TRANSIENT_ROLL / speed if speed > 0.0 else np.inf  # nothing settles at standstill
     return int(np.searchsorted(settings.time, settings.time[begin] + seconds))
-
-
-def _rolled_in(sweep: Sweep, stretch: Stretch) -> Stretch:
-    """A sweep without its first metres of rolling; dropped if its load is not held."""
-    begin, end = stretch.begin, stretch.end
-    low, middle, high = np.nanpercentile(sweep.Fz[begin:end], [constants.CORE[0], 50.0, constants.CORE[1]])
-    if stretch.swept != "Fz" and high - low > constants.HELD_LOAD * middle:
-        return stretch._replace(dropped=f"the load wanders from {low:.0f} to {high:.0f} N")
-    return stretch._replace(begin=min(_rolled_from(begin, settings_of(sweep), end), end - 1))
 
 
 def settled(

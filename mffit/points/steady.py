@@ -99,7 +99,7 @@ def _of_piece(settings: SteadySettings, scale: Scale) -> list[Stretch]:
     if len(settings.time) < 2:
         return [Stretch(0, len(settings.time), "only one sample", MOVE)]
     masks = moves(settings, scale)
-    changing = masks["Fz"] | masks["p"] | masks["V"]
+    changing = _load_changes(settings, masks["Fz"]) | masks["p"] | masks["V"]
     found = []
     for begin, end in runs(~changing):
         part = SteadySettings(*(x[begin:end] for x in settings))
@@ -107,6 +107,25 @@ def _of_piece(settings: SteadySettings, scale: Scale) -> list[Stretch]:
         found += [s._replace(begin=s.begin + begin, end=s.end + begin) for s in inside]
     found += [Stretch(begin, end, "load, pressure or speed changes", MOVE) for begin, end in runs(changing)]
     return sorted(found)
+
+
+def _load_changes(settings: SteadySettings, moving: np.ndarray) -> np.ndarray:
+    """Mask (n,) of the samples in which the load goes to another set-point, of those in which it is ``moving`` (n,).
+
+    A load that turns back, keeps moving without a rest or goes on before and after is a profile, and all readings follow it.
+    """
+    smooth, changing = _smoothed(settings, "Fz")[0], moving.copy()
+    wanders, rest = moving.copy(), samples_in(settings.time, _shortest_plateau(settings))
+    lag = samples_in(settings.time, constants.COMPARED_APART)
+    for begin, end in runs(~moving):
+        wanders[begin:end] = end - begin < rest
+    for begin, end in runs(wanders):
+        way = smooth[max(begin - lag, 0) : end + lag : lag]
+        back = 0.5 * (np.sum(np.abs(np.diff(way))) - abs(way[-1] - way[0]))
+        beside = np.ptp(smooth[max(begin - lag - rest, 0) : end + lag + rest]) - np.ptp(way)
+        if end - begin > 2 * rest or max(back, beside) > constants.SWEPT_SHARE * np.ptp(way):
+            changing[begin:end] = False
+    return changing
 
 
 def samples_in(time: np.ndarray, seconds: float) -> int:

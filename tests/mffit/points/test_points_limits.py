@@ -300,17 +300,13 @@ def test_the_first_metres_behind_a_change_are_a_stretch_of_their_own():
     assert all(s.end - s.begin in (20, 21) for s in rolling)  # 0.4 s at 5 m/s
 
 
-@pytest.mark.parametrize(("swing", "dropped"), [(0.27, True), (0.23, False)])
-def test_a_load_that_wanders_by_half_drops_its_sweep(swing, dropped):
-    """25 samples of a sine have their 5th and 95th percentiles at 0.951 of its amplitude."""
+def test_a_load_that_wanders_by_half_leaves_its_sweep_whole():
     n = 2000
     Fz = 1500.0 * (
-        1.0 + swing * np.sin(200.0 * np.pi * np.arange(n) / n)
+        1.0 + 0.27 * np.sin(200.0 * np.pi * np.arange(n) / n)
     )  # each half second: no change of the setting
     (found,) = (s for s in chosen(swept(Fz=Fz), [], None) if s.kind == SWEEP)
-    assert bool(found.dropped) == dropped
-    if dropped:
-        assert found.dropped == "the load wanders from 1115 to 1885 N"
+    assert not found.dropped
 
 
 def test_a_series_of_faulty_samples_only_is_one_dropped_stretch_of_all_of_them():

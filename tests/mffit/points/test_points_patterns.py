@@ -217,29 +217,29 @@ def test_a_move_in_a_staircase_is_no_sweep_and_a_movement_over_its_range_is():
     assert not np.any(moves(settings)["gamma"])
 
 
-def braked_with_the_load(fall: float) -> pd.DataFrame:
-    """Eight brakings between rests, in each of which a share of the load goes and comes back every second."""
+def braked_with_the_speed(fall: float) -> pd.DataFrame:
+    """Eight brakings between rests, in each of which a share of the speed goes and comes back every second."""
     corners = [
         (6.0 * k + x, s) for k in range(8) for x, s in ((0.0, 0.0), (3.0, 0.0), (4.4, -0.1), (5.9, 0.0))
     ]
     kappa = at_rate(corners, 50.0)
     table = recording(50.0, kappa=kappa)
-    table["Fz_N"] *= 1.0 - fall * (kappa < -0.001) * (np.arange(len(kappa)) // 25 % 2)
+    table["V_mps"] *= 1.0 - fall * (kappa < -0.001) * (np.arange(len(kappa)) // 25 % 2)
     return table
 
 
 def test_a_setting_whose_sweeps_are_all_lost_is_in_doubt(read):
-    """The load jumps by two thirds while the wheel is braked, so that no sweep of slip is held."""
-    (doubt,) = read(braked_with_the_load(0.67)).doubts
+    """The speed jumps by two thirds while the wheel is braked, so that no sweep of slip is held."""
+    (doubt,) = read(braked_with_the_speed(0.67)).doubts
     assert doubt.startswith("kappa moves from -0.09")
     assert "load, pressure or speed changes" in doubt
-    assert not read(braked_with_the_load(0.2)).doubts
+    assert not read(braked_with_the_speed(0.05)).doubts
 
 
 def test_a_build_without_the_sweeps_of_its_recording_is_not_sound(tmp_path):
     up = at_rate([(0.0, -8.0), (8.0, 8.0), (16.0, -8.0)], 20.0)
     recording(20.0, alpha_deg=up).to_csv(tmp_path / "a.csv", index=False)
-    braked_with_the_load(0.67).to_csv(tmp_path / "b.csv", index=False)
+    braked_with_the_speed(0.67).to_csv(tmp_path / "b.csv", index=False)
     tyre = {"name": "x", "unloaded_radius": 0.25, "nominal_load": LOAD, "nominal_pressure": 120.0}
     content = {"tyre": tyre, "rig": {"type": "flat-track"}, "sweep": [{"file": "a.csv"}, {"file": "b.csv"}]}
     result = build(configuration.load(content, folder=tmp_path))
@@ -298,6 +298,33 @@ def test_a_load_that_moves_at_a_held_angle_is_a_sweep_of_the_load(read):
     assert not of_kind(found, PLATEAU)
     assert np.ptp(found.points.Fz) > 1150.0
     np.testing.assert_allclose(found.points.Fy, -found.points.Fz * sine(found.points.alpha), rtol=0.01)
+
+
+@pytest.mark.parametrize("cycle", [6.0, 12.0, 20.0])
+def test_a_load_profile_under_held_angles_is_a_sweep_of_the_load(read, cycle):
+    """A cosine of load between 600 and 1800 N at each of four angles, and none of its turns is a set-point."""
+    t = np.arange(0.0, 160.0, 0.05)
+    alpha = np.select([t < 40.0, t < 80.0, t < 120.0], [-3.0, -1.0, 1.0], 3.0)
+    load = 1200.0 - 600.0 * np.cos(2.0 * np.pi * (t % 40.0) / cycle)
+    table = recording(20.0, alpha_deg=alpha)
+    table = table.assign(Fz_N=load, Fy_N=-load * sine(np.radians(alpha)))
+    found = read(table)
+    assert {s.swept for s in of_kind(found, SWEEP)} == {"Fz_N"}
+    assert sum(s.end_s - s.begin_s for s in of_kind(found, SWEEP)) > 0.9 * t[-1]
+
+
+@pytest.mark.parametrize("cycle", [6.0, 12.0, 20.0])
+def test_a_load_profile_does_not_cut_the_sweep_of_an_angle(read, cycle):
+    alpha = at_rate([(0.0, -8.0), (23.0, 8.0), (46.0, -8.0)], 20.0)
+    load = 1200.0 - 600.0 * np.cos(2.0 * np.pi * np.arange(len(alpha)) / 20.0 / cycle)
+    table = recording(20.0, alpha_deg=alpha)
+    found = read(table.assign(Fz_N=load, Fy_N=-load * sine(np.radians(alpha))))
+    (sweep,) = of_kind(found, SWEEP)
+    assert sweep.swept == "alpha_deg"
+    assert sweep.end_s - sweep.begin_s > 45.0
+    np.testing.assert_allclose(
+        found.points.Fy, -found.points.Fz * sine(found.points.alpha), rtol=0.03, atol=10.0
+    )
 
 
 def test_a_load_that_wanders_by_a_tenth_is_held(read):
