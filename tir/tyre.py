@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import reprlib
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import FrozenInstanceError
 from functools import cached_property
 from pathlib import Path
@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Never, Self
 
 from tir import calls
+from tir.codegen.arrays import array_function
 from tir.codegen.program import Switches
 from tir.document import Document, encoded, read_document
 from tir.equations.forces import Forces, State
@@ -191,6 +192,45 @@ class Tyre(TyreRecord):
         )
         on = phi_t is not None or self.turn_slip if turn_slip is None else bool(turn_slip)
         return calls.state(self, inputs, Switches(on, bool(star), bool(limits)))
+
+    def array_function(
+        self,
+        xp: Any,
+        *,
+        outputs: tuple[str, ...] = Forces._fields,
+        turn_slip: bool | None = None,
+        star: bool = False,
+        limits: bool = False,
+        tunable: Sequence[str] = (),
+    ) -> Callable[..., Any]:
+        """The tyre as a function of the arrays of a library that differentiates: JAX, torch; also numpy and CuPy.
+
+        ``f = tyre.array_function(jax.numpy)`` takes Fz, alpha, gamma, kappa, phi_t, Vx, p (ISO-W, SI, radians) in this order or
+        by name, scalars or arrays that broadcast. It goes through ``jit``, ``vmap`` and ``grad``. An input left out is FNOMIN,
+        LONGVL, INFLPRES, the factor of the file, else 0. Derivatives are finite everywhere: where one is infinite, it is 0.
+
+        Parameters
+        ----------
+        xp : ``jax.numpy``, ``torch``, ``numpy`` or ``cupy``; JAX computes in double precision with ``jax_enable_x64`` only
+        outputs : fields of Forces and State
+        turn_slip : whether spin acts; default: if the units digit of the file's USE_MODE is 5
+        star, limits : as in a call of the tyre
+        tunable : scaling factors, and ``T_degC`` if the file has temperature terms, that become further inputs, in this order
+
+        Returns
+        -------
+        callable
+            It returns Forces, or a named tuple of the outputs, as arrays.
+
+        Raises
+        ------
+        TirError
+            If ``xp`` is no array library, a value by which the equations divide is 0, a name cannot be turned, or an output is
+            unknown.
+        """
+        return array_function(
+            self, xp, outputs=outputs, turn_slip=turn_slip, star=star, limits=limits, tunable=tunable
+        )
 
     def plot(self, *, loads: Iterable[float] | None = None, turn_slip: bool | None = None) -> Figure:
         """Draw the forces: Fy and Mz over sideslip, Fx over longitudinal slip, Fy over camber.

@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Sequence
 from typing import Any
 
-from tir.codegen.graph import OPERATORS
-from tir.codegen.program import INPUTS, called, computed
-from tir.codegen.source import FUNCTIONS
+from tir.codegen.library import operations_of, run
+from tir.codegen.program import INPUTS, called
 from tir.equations.forces import Forces
 from tir.errors import TirError
 from tir.exporting import exported
 from tir.record import TyreRecord
-
-NAMES = {"where": "if_else", "both": "logic_and"}
-"""Functions that have another name in CasADi."""
-GUARDED = {"sqrt": (0.0, 0.0), "arccos": (1.0, 0.0)}
-"""Functions with an infinite slope at the end of their range: that end, and the value there. At it the slope is taken as 0."""
 
 
 def casadi_function(
@@ -57,8 +50,7 @@ def casadi_function(
     program = made.program(outputs)
     factors = {one.name: one.start for one in made.turned}
     inputs = {key: casadi.SX.sym(called(key)) for key in (*INPUTS, *factors)}
-    nodes = (*program.per_tyre, *program.per_point)
-    results = computed(nodes, program.outputs.values(), _operations(casadi), inputs, {})
+    results = run(program, operations_of(casadi, casadi.if_else, both=casadi.logic_and), inputs)
     usual = {"Fz": tyre["FNOMIN"], "Vx": tyre["LONGVL"], "pressure": tyre["INFLPRES"], **factors}
     options: dict[str, Any] = {
         "allow_duplicate_io_names": True,  # Fz is an input, and an output within the limits
@@ -67,15 +59,3 @@ def casadi_function(
     name = name or ("tyre_turn_slip" if made.switches.turn_slip else "tyre")
     given = [*map(called, inputs)]
     return casadi.Function(name, [*inputs.values()], [*map(casadi.SX, results)], given, [*outputs], options)
-
-
-def _operations(casadi: Any) -> dict[str, Callable[..., Any]]:
-    named = {name: getattr(casadi, NAMES.get(name, name)) for name in (*FUNCTIONS, *NAMES)}
-    guarded = {name: partial(_guarded, casadi, name, *ends) for name, ends in GUARDED.items()}
-    return {**OPERATORS, **named, **guarded}
-
-
-def _guarded(casadi: Any, word: str, end: float, there: float, x: Any) -> Any:
-    """The function with slope 0 at the end of its range: an infinite slope times the 0 behind it would be NaN."""
-    at_end = x == end
-    return casadi.if_else(at_end, there, getattr(casadi, word)(casadi.if_else(at_end, 0.5, x)))
