@@ -24,6 +24,7 @@ from tir.equations.forces import Forces, State
 from tir.equations.normalise import OperatingCondition
 from tir.errors import TirError
 from tir.evaluate import unchecked
+from tir.inputs import arrays_of
 from tir.record import TyreRecord
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ def forces(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> Force
 
 
 def _by_formula(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> Forces:
-    arrays = [np.asarray(x) for x in inputs]
+    arrays = arrays_of(inputs)
     if {a.dtype for a in arrays} != ONLY_DOUBLES:
         if not _real(arrays):
             return Forces(*_evaluated(tyre, _of_any_kind(inputs, arrays), switches, FORCES))
@@ -91,7 +92,7 @@ def _by_formula(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> 
 
 def state(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> State:
     """State for the same; see :meth:`tir.Tyre.state`."""
-    arrays = [np.asarray(x) for x in inputs]
+    arrays = arrays_of(inputs)
     if _real(arrays) and all(a.shape == () for a in arrays):
         return State(*_one(tyre, arrays, switches, STATE))
     return State(*_evaluated(tyre, _of_any_kind(inputs, arrays), switches, STATE))

@@ -11,15 +11,18 @@ from collections.abc import Iterator, KeysView, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from inspect import Parameter, Signature
-from numbers import Complex, Number
+from numbers import Complex
 from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
 from typing import Any, NamedTuple, Self
+
+import numpy as np
 
 from tir.correction import Correction, read_correction
 from tir.defaults import completed, followed
 from tir.document import Document
 from tir.errors import Problem, TirError
+from tir.inputs import records, way_for
 from tir.mode import asks_for_turn_slip, warn, warn_of_doubt
 from tir.parameters import BY_NAME, TABLE
 
@@ -213,11 +216,10 @@ def _usable(given: Mapping[str, Any]) -> None:
         text = BY_NAME[name].kind == "text"
         if not (isinstance(value, str) if text else _calculable(value)):
             expected = "text" if text else "number"
-            raise TirError(f"{name} is {reprlib.repr(value)}, but a {expected} was expected", name=name)
+            way = f"; {way}" if (way := way_for(value)) else ""
+            raise TirError(f"{name} is {reprlib.repr(value)}, but a {expected} was expected{way}", name=name)
 
 
 def _calculable(value: Any) -> bool:
-    """Whether the equations can compute with it: a number, an array, a traced number, a symbol of another program."""
-    if isinstance(value, Number):
-        return isinstance(value, Complex)  # a Decimal does not combine with floats
-    return hasattr(value, "__neg__") and hasattr(value, "__truediv__")
+    """Whether the equations can compute with it: a number, an array, a traced number. A Decimal does not combine with floats."""
+    return isinstance(value, Complex | np.ndarray) or records(value)

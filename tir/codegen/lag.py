@@ -17,6 +17,7 @@ from tir.codegen.single import Run, compiled, constants, with_defaults
 from tir.equations import contact
 from tir.equations.normalise import OperatingCondition
 from tir.evaluate import either_way
+from tir.inputs import arrays_of
 
 LAG_INPUTS = ("Fz", "Vx", "Vsx", "Vsy", "gamma", "phi_t", "pressure", "damping")
 LAG_TEXTS = {
@@ -68,7 +69,7 @@ def _run(quick: Run, otherwise: Run, *given: Any) -> tuple[Any, ...]:
 
 
 def _in_numpy(run: Replay, values: Mapping[str, float], names: Sequence[str], *given: Any) -> tuple[Any, ...]:
-    inputs = [np.asarray(x, dtype=float)[()] for x in given]
+    inputs = [np.asarray(x, dtype=float)[()] for x in arrays_of(given, names)]
     found = run({**values, **dict(zip(names, inputs, strict=True))})
     shape = np.broadcast_shapes(*map(np.shape, inputs))
     return tuple(np.broadcast_to(x, shape).copy() if shape else float(x) for x in found)
