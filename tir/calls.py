@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable, Sequence
+from itertools import repeat
 from operator import itemgetter
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -34,6 +35,7 @@ Function = Callable[..., Any]
 Made = TypeVar("Made")
 BLOCK = int(constants.CONDITIONS_PER_BLOCK)
 PER_CALL = int(constants.CONDITIONS_PER_CALL)
+FEW = int(constants.CONDITIONS_ONE_BY_ONE)
 FORCES, STATE = Forces._fields, State._fields
 OF_CONTACT = ("K_xk", "K_ya", "mu_x", "mu_y", "sigma_x", "sigma_y")
 """States that the lag of the contact needs."""
@@ -186,7 +188,7 @@ def _kernel_for(tyre: TyreRecord, n: int, switches: Switches) -> Function | None
         return bound
     meter = kernels.meter("batch", switches)
     if meter.loaded is None:
-        meter.left -= n + PER_CALL
+        meter.left -= n + PER_CALL * min(1.0, n / FEW)
     loaded = meter.kernel()
     return None if loaded is None else _prepared(tyre, ("batch", switches), switches, FORCES, loaded.run_of)
 
@@ -242,8 +244,22 @@ def _many(tyre: TyreRecord, inputs: Sequence[np.ndarray], n: int, switches: Swit
     run = _kernel_for(tyre, n, switches)
     if run is not None:
         return _in_vectors(run, inputs, n)
+    if 0 < n < FEW and (found := _one_by_one(tyre, inputs, switches)) is not None:
+        return found
     values = _prepared(tyre, ("values", switches), switches, FORCES, dict)
     return None if values is None else _in_numpy(replay(switches, FORCES), values, inputs, n)
+
+
+def _one_by_one(tyre: TyreRecord, inputs: Sequence[np.ndarray], switches: Switches) -> np.ndarray | None:
+    """Forces (6, n) by scalar calls; None if a parameter is not a real number, or Python's arithmetic raises."""
+    run = function_of(tyre, switches)
+    if run is None:
+        return None
+    rows = zip(*(x.tolist() if x.ndim else repeat(x.item()) for x in inputs), strict=False)
+    try:
+        return np.array([*zip(*(run(*row) for row in rows), strict=True)])
+    except (ArithmeticError, ValueError):
+        return None
 
 
 def _in_numpy(program: Replay, values: dict[str, float], inputs: Sequence[np.ndarray], n: int) -> np.ndarray:

@@ -26,6 +26,9 @@ CONDITIONS_WORTH_LOADING = Count(
 CONDITIONS_PER_CALL = Count(
     1000, "-", "Conditions that take as long as what every call in numpy takes beside them.", "docs/speed.md"
 )
+CONDITIONS_ONE_BY_ONE = Count(
+    60, "-", "Fewest conditions of an array that numpy computes sooner than scalar calls one after the other."
+)
 
 # Model error
 SLIP_OF_FREE_ROLLING = Real(

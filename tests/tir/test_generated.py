@@ -351,7 +351,7 @@ def test_machine_code_is_found_without_being_asked_for(monkeypatch, tmp_path, ki
     if cached:
         kernel.load(kind, Switches())
     called = tir.read(VECTORS / "moto_front.tir")
-    alpha = 0.05 if kind == "one" else np.full(9, 0.05)
+    alpha = 0.05 if kind == "one" else np.full(calls.FEW, 0.05)
     before = called(2e3, alpha, turn_slip=False)
     assert kernels.meter(kind, Switches()).loaded is None
     for _ in range(5):
@@ -436,6 +436,24 @@ def test_without_llvm_the_message_names_the_package(monkeypatch):
     kernel.load.cache_clear()
     with pytest.raises(tir.TirError, match="pip install llvmlite"):
         tir.compile_kernels()
+
+
+@pytest.mark.parametrize("turn_slip", [False, True])
+def test_few_conditions_without_llvm_are_computed_one_by_one(monkeypatch, tyre, conditions, turn_slip):
+    """The equations in numpy take as long for three conditions as for sixty; where Python's numbers raise, numpy is used."""
+    monkeypatch.setattr(kernel, "obstacle", lambda: "none here")
+    monkeypatch.setattr(kernels.meter("batch", Switches(turn_slip)), "loaded", None)
+    few = [np.reshape(x[:6], (2, 3)) if np.ndim(x) else x for x in conditions.values()]
+    given = dict(zip(conditions, few, strict=True))
+    wanted = evaluate(tyre.p, **given, turn_slip=turn_slip)[0]
+    named = {"p" if name == "pressure" else name: x for name, x in given.items()}
+    in_numpy = calls._in_numpy
+    monkeypatch.setattr(calls, "_in_numpy", None)
+    for found, force in zip(tyre.replace()(**named, turn_slip=turn_slip), wanted, strict=True):
+        np.testing.assert_allclose(found, force, rtol=1e-11, atol=1e-11 * np.max(np.abs(force)))
+    monkeypatch.setattr(calls, "_in_numpy", in_numpy)
+    named["p"] = np.zeros(3)
+    assert all(x.shape == (2, 3) for x in tyre.replace()(**named, turn_slip=turn_slip))
 
 
 def test_large_calls_without_llvm_go_through_numpy(monkeypatch, tyre):
