@@ -55,6 +55,20 @@ def digest(values: Mapping[str, Any]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
+def share_of_load(Fz: Any, lowest: float) -> Any:
+    """Share of the model error at the ``lowest`` tested load that is left at a load: below, proportional to it, as forces are."""
+    return np.minimum(np.maximum(Fz / lowest, 0.0), 1.0)
+
+
+def slip_beyond(kappa: Any, alpha: Any, braked: float, driven: float) -> Any:
+    """Exponent by which the model error of free rolling fades at a longitudinal slip beyond the tested ``braked`` to ``driven``.
+
+    It fades with the combined slip: the larger the sideslip, the longer it lasts.
+    """
+    beyond = kappa - np.minimum(np.maximum(kappa, braked), driven)  # np.clip is slower for one number
+    return 0.5 * beyond**2 / (constants.SLIP_OF_FREE_ROLLING**2 + np.tan(alpha) ** 2)
+
+
 @dataclass(frozen=True)
 class Correction(ReadOnlyArrays):
     """The model error over a grid of d inputs."""
@@ -98,18 +112,11 @@ class Correction(ReadOnlyArrays):
         return Forces(*found)
 
     def _left_of_any(self, by_name: Mapping[str, Any]) -> Any:
-        """Share (channels, ...) that is left at this load and longitudinal slip, whatever the length of fading.
-
-        Below the lowest tested load it is proportional to the load, as forces are. Over longitudinal slip without a length, it
-        fades with the combined slip: the larger the sideslip, the longer it lasts.
-        """
-        kappa, known = by_name["kappa"], self.nodes.get("kappa", np.zeros(1))
-        beyond = kappa - np.minimum(
-            np.maximum(kappa, known[0]), known[-1]
-        )  # np.clip is slower for one number
-        lasts = constants.SLIP_OF_FREE_ROLLING**2 + np.tan(by_name["alpha"]) ** 2
-        fades = np.multiply.outer(self._of_free_rolling, 0.5 * beyond**2 / lasts)
-        return np.minimum(np.maximum(by_name["Fz"] / self.lowest, 0.0), 1.0) * np.exp(-fades)
+        """Share (channels, ...) that is left at this load and longitudinal slip, whatever the length of fading."""
+        known = self.nodes.get("kappa", np.zeros(1))
+        driven = slip_beyond(by_name["kappa"], by_name["alpha"], known[0], known[-1])
+        fades = np.multiply.outer(self._of_free_rolling, driven)
+        return share_of_load(by_name["Fz"], self.lowest) * np.exp(-fades)
 
     @cached_property
     def _of_free_rolling(self) -> np.ndarray:

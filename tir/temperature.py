@@ -58,7 +58,8 @@ def at_temperature(tyre: Kind, T_degC: float) -> Kind:
             "NAME-at-temperature.tir that mffit build writes where it models the temperature",
             path=None if tyre.document is None else tyre.document.path,
         )
-    T_degC = float(T_degC)
+    beyond = _beyond(tyre, float(T_degC))
+    T_degC = held(tyre, float(T_degC))
     warmer = T_degC - tyre.measured[REFERENCE].value
     factors, stated = factors_at(terms, warmer), {}
     for name in SCALED_BY.keys() - CURVED_BY.values():
@@ -86,14 +87,26 @@ def at_temperature(tyre: Kind, T_degC: float) -> Kind:
     moved = tyre.replace(**scaled).annotate(
         measured=stated, status=dict.fromkeys(scaled, f"at {T_degC:g} degC, by the temperature terms")
     )
-    beyond = _beyond(tyre, T_degC)
     return replace(moved, on_reading=(*tyre.on_reading, beyond)) if beyond else moved
+
+
+def held(tyre: TyreRecord, T_degC: float) -> float:
+    """The temperature [degC], held to the range in which the terms were measured; a file that states none has no limits."""
+    low, high = _tested(tyre)
+    return min(max(T_degC, low), high)
+
+
+def _tested(tyre: TyreRecord) -> tuple[float, float]:
+    """The range of temperature [degC] in which the terms were measured, unlimited if the file states none."""
+    known = {name: q.value for name, q in tyre.measured.items() if name in (LOWEST, HIGHEST)}
+    return known.get(LOWEST, -math.inf), known.get(HIGHEST, math.inf)
 
 
 def _beyond(tyre: TyreRecord, T_degC: float) -> Problem | None:
     """A warning for a temperature outside the range of the terms."""
-    if LOWEST not in tyre.measured or HIGHEST not in tyre.measured:
-        return None
-    low, high = tyre.measured[LOWEST].value, tyre.measured[HIGHEST].value
-    said = f"{T_degC:g} degC is outside {low:g} to {high:g} degC, where the temperature terms were measured"
+    low, high = _tested(tyre)
+    said = (
+        f"{T_degC:g} degC is outside {low:g} to {high:g} degC, where the temperature terms were measured; the tyre is that at "
+        f"{held(tyre, T_degC):g} degC"
+    )
     return None if low <= T_degC <= high else Problem("warning", said)

@@ -95,7 +95,8 @@ class Tyre(TyreRecord):
 
         Parameters
         ----------
-        T_degC : temperature [degC]; outside the range of the terms, ``problems`` gets a warning
+        T_degC : temperature [degC]; outside the range in which the terms were measured, the copy is the tyre at the nearest end
+            of it, and ``problems`` gets a warning
 
         Returns
         -------

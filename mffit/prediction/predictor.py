@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -21,7 +22,17 @@ from mffit.quantities import column, u_column
 from mffit.rig import Readings, Simulation
 from mffit.rig_errors import BESIDE, T_REF, ZEROS, error_of
 from tir import Tyre
+from tir.correction import share_of_load, slip_beyond
 from tir.frozen import ReadOnlyArrays
+
+
+class Left(NamedTuple):
+    """Shares (n,) of the model error at conditions where nothing was tested."""
+
+    load: (
+        np.ndarray
+    )  #: of the error at the lowest tested load; it falls with the load, and its uncertainty with it
+    slip: np.ndarray  #: correlation with the error of the tested longitudinal slip
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,17 +55,19 @@ class MissedChannel(ReadOnlyArrays):
         return np.asarray(own @ own.T)
 
     def at(
-        self, settings: np.ndarray, slopes: np.ndarray, of_tyre: np.ndarray
+        self, settings: np.ndarray, slopes: np.ndarray, of_tyre: np.ndarray, left: Left
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The model error (n,), the variance of the tyre's force (n,), and the variance of a reading of it (n,).
 
         The estimate keeps the file's coefficients, so it is 0 where the formula describes the tyre exactly; errors of the
         coefficients count in the variance. ``slopes`` (n, k) are derivatives of the force at the conditions ``settings`` (n,
-        d), ``of_tyre`` (k,) is the mask of the coefficients.
+        d), ``of_tyre`` (k,) is the mask of the coefficients, ``left`` what remains of the model error where nothing was
+        tested.
         """
         likeness, functions = self._functions(settings)
+        likeness, functions = likeness * left.slip, functions * (left.load * left.slip)[:, None]
         mean, reading = (np.sum(self._rows(functions, by) ** 2, axis=1) for by in (slopes * of_tyre, slopes))
-        unlike = (1.0 - likeness**2) * self.components.missed**2
+        unlike = (1.0 - likeness**2) * (left.load * self.components.missed) ** 2
         return functions @ self.missed, mean + unlike, reading + unlike
 
     def mean(self, settings: np.ndarray) -> np.ndarray:
@@ -106,6 +119,7 @@ class Predictor:
     beside: Mapping[str, float]
     """Effects of the tyre for which a property file has no coefficient, and its temperature terms."""
     T_range: tuple[float, float] | None = None  #: tested temperatures [degC], to which the terms are held
+    lowest_load: float = 0.0  #: lowest tested load [N], below which the model error falls with the load
 
     @property
     def curved(self) -> bool:
@@ -214,7 +228,18 @@ class Predictor:
         """The estimated model error (n,) of a channel, averaged over conditions that are not stated."""
         channel = self.channels[name]
         found = [channel.mean(settings) for settings in _settings(points, channel.smooth.inputs)]
-        return np.asarray(np.mean(found, axis=0))
+        left = self._left(channel, points)
+        return np.asarray(left.load * left.slip * np.mean(found, axis=0))
+
+    def _left(self, channel: MissedChannel, points: Points) -> Left:
+        """What is left of a channel's model error, by the rule of :class:`tir.correction.Correction`."""
+        slip = np.ones(len(points))
+        ends = {
+            one.name: (one.lower, one.upper) for own in self.channels.values() for one in own.smooth.inputs
+        }
+        if "kappa" not in [one.name for one in channel.smooth.inputs]:
+            slip = np.exp(-slip_beyond(points.kappa, points.alpha, *ends.get("kappa", (0.0, 0.0))))
+        return Left(np.asarray(share_of_load(points.Fz, max(self.lowest_load, 1e-9))), slip)
 
     def points(self, tyre: Tyre, conditions: pd.DataFrame) -> Points:
         """The conditions as points; a missing temperature is NaN, other missing conditions get nominal values."""
@@ -243,8 +268,9 @@ class Predictor:
 
         The variance of a reading includes the scatter over the conditions that are not stated.
         """
+        left = self._left(channel, points)
         found = [
-            channel.at(settings, slopes, self._of_tyre)
+            channel.at(settings, slopes, self._of_tyre, left)
             for settings in _settings(points, channel.smooth.inputs)
         ]
         means, variances, readings = (np.array(own) for own in zip(*found, strict=True))
@@ -306,7 +332,7 @@ def predictor(
     names = tuple(left.numbers[i].name for i in kept)
     beside = {name: rig[name] for name in (*(error.name for error in BESIDE), *terms) if name in rig}
     T_range = (float(np.nanmin(points.T)), float(np.nanmax(points.T))) if terms else None
-    return Predictor(main_path(points), names, channels, zeros, beside, T_range)
+    return Predictor(main_path(points), names, channels, zeros, beside, T_range, float(np.min(points.Fz)))
 
 
 def _root(own: LinearisedChannel, kept: Sequence[int], spread: Mapping[int, float]) -> np.ndarray:

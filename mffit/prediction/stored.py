@@ -44,6 +44,7 @@ def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
         "zeros": dict(found.zeros),
         "beside": dict(found.beside),
         "T_range_degC": found.T_range,
+        "lowest_load_N": found.lowest_load,
         "channels": {
             name: {
                 "inputs": [asdict(one) for one in own.smooth.inputs],
@@ -114,21 +115,33 @@ def predict(folder: str | Path, conditions: str | Path | pd.DataFrame) -> pd.Dat
     """
     known, tyre, fitted = load(Path(folder))
     table = checked(conditions) if isinstance(conditions, pd.DataFrame) else read_conditions(Path(conditions))
-    for sentence in _beyond_ranges(known.points(tyre, table), tyre):
+    for sentence in _beyond_ranges(known, known.points(tyre, table), tyre):
         warnings.warn(sentence, TirWarning, stacklevel=2)
     return known.predict(tyre, fitted, table)
 
 
-def _beyond_ranges(points: Points, tyre: Tyre) -> Iterator[str]:
-    """A sentence for each condition that leaves the range of the property file: force and uncertainty are extrapolated there."""
-    for name, keys in zip(("Fz_N", "gamma_deg", "p_kPa", "alpha_deg", "kappa"), RANGES, strict=True):
-        low, high = (tyre[key] * of_si(name) for key in keys)
+def _beyond_ranges(known: Predictor, points: Points, tyre: Tyre) -> Iterator[str]:
+    """A sentence for each condition that leaves the range of the property file: force and uncertainty are extrapolated there.
+
+    Temperature has no range in a file; that of the test counts, to whose ends it is held.
+    """
+    ranges = {
+        name: tuple(tyre[key] * of_si(name) for key in keys)
+        for name, keys in zip(("Fz_N", "gamma_deg", "p_kPa", "alpha_deg", "kappa"), RANGES, strict=True)
+    }
+    of_file = "the range of the property file", "no reading supports force or uncertainty there"
+    words = dict.fromkeys(ranges, of_file)
+    if known.T_range is not None:
+        ranges["T_degC"] = known.T_range
+        words["T_degC"] = "the tested temperatures", "the force is that at the nearest of them"
+    for name, (low, high) in ranges.items():
         values, slack = points.condition(name), 1e-6 * (high - low)
         rows = np.flatnonzero((values < low - slack) | (values > high + slack))
         if len(rows):
+            what, so = words[name]
             yield (
-                f"{name} is outside the range of the property file, {low:.4g} to {high:.4g}, in {len(rows)} of "
-                f"{counted(len(points), 'condition')}, first in row {rows[0] + 1}: no reading supports force or uncertainty there"
+                f"{name} is outside {what}, {low:.4g} to {high:.4g}, in {len(rows)} of "
+                f"{counted(len(points), 'condition')}, first in row {rows[0] + 1}: {so}"
             )
 
 
@@ -141,6 +154,7 @@ def _predictor(content: dict[str, Any]) -> Predictor:
         names=names,
         channels={name: _channel(own, len(names)) for name, own in channels.items()},
         T_range=None if T_range is None else (float(T_range[0]), float(T_range[1])),
+        lowest_load=float(content["lowest_load_N"]),
         **{
             key: {ERROR_OF[name].name: float(value) for name, value in content[key].items()}
             for key in ("zeros", "beside")

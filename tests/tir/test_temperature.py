@@ -82,9 +82,18 @@ def test_terms_without_their_reference_are_none():
         tir.read(FRONT).annotate(measured=stated).at_temperature(70.0)
 
 
-def test_a_temperature_that_leaves_no_friction_is_refused(tyre):
+@pytest.mark.parametrize(("T_degC", "end"), [(-10.0, 45.0), (300.0, 75.0)])
+def test_a_temperature_outside_the_measured_range_is_the_nearest_of_it(tyre, T_degC, end):
+    beyond, at_end = tyre.at_temperature(T_degC), tyre.at_temperature(end)
+    assert beyond == at_end
+    assert beyond.measured["rig.T_ref_degC"].value == end
+    assert f"the tyre is that at {end:g} degC" in beyond.problems[-1].sentence
+
+
+def test_a_temperature_that_leaves_no_friction_is_refused():
+    endless = {name: q for name, q in TERMS.items() if name not in ("T_min_degC", "T_max_degC")}
     with pytest.raises(tir.TirError, match="at 300 degC"):
-        tyre.at_temperature(300.0)
+        tir.read(FRONT).annotate(measured=endless).at_temperature(300.0)
 
 
 CURVED = TERMS | {"rig.k_T_grip_per_K2": tir.Quantity(-2e-4, 1e-5, "1/K^2")}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 
 import numpy as np
 import pandas as pd
@@ -21,7 +22,8 @@ CHANNELS = {"Fy": "N", "Mz": "Nm"}
 
 def of(tyre: tir.Tyre, at: pd.DataFrame) -> tir.Forces:
     alpha, gamma = np.radians(at.alpha_deg.to_numpy()), np.radians(at.gamma_deg.to_numpy())
-    return tyre(at.Fz_N.to_numpy(), alpha=alpha, gamma=gamma)
+    kappa = at.kappa.to_numpy() if "kappa" in at else 0.0
+    return tyre(at.Fz_N.to_numpy(), alpha=alpha, gamma=gamma, kappa=kappa)
 
 
 @pytest.fixture
@@ -115,3 +117,20 @@ def test_a_table_of_few_nodes_uses_them_and_says_what_lines_between_them_add(for
         lines = RegularGridInterpolator(axes, values)(at.to_numpy())
         added.append(rms(lines - missed) / rms(missed))
     assert max(added) == pytest.approx(found.added, rel=0.25)
+
+
+def test_below_the_tested_loads_and_under_slip_prediction_and_table_fade_alike(foreign: Built, tyres):
+    """At the lowest load, both have the whole miss; below, the part that the load is; over slip that nobody ran, hardly any."""
+    file, whole = tyres
+    at = pd.DataFrame({"alpha_deg": [-6.0, -3.0, 2.0, 5.0], "gamma_deg": 2.0, "p_kPa": 200.0, "kappa": 0.0})
+    for load in (800.0, 400.0, 80.0):
+        for kappa in (0.0, 0.05, 0.3):
+            here = at.assign(Fz_N=load, kappa=kappa)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", tir.TirWarning)
+                best = mffit.predict(foreign.folder, here)
+            missed = of(whole, here).Fy - of(file, here).Fy
+            by_prediction = best["Fy_best_N"].to_numpy() - of(file, here).Fy
+            assert by_prediction == pytest.approx(missed, abs=1.5 * load / 800.0)
+            assert np.all(np.abs(missed) < 60.0 * load / 800.0)
+    assert np.all(np.abs(missed) < 0.5)

@@ -177,11 +177,32 @@ def test_the_best_estimate_is_the_tyre_at_the_stated_temperature(warming: Built,
 
 
 def test_temperature_acts_as_far_as_it_was_tested(warming: Built):
+    """Beyond, prediction and file stay at the nearest tested temperature, and both say so."""
     conditions = drawn(20, alpha=9.5, gamma=4.0, loads=(800.0, 3400.0))
     low, high = warming.result.fit.temperature.T_range
+    file = tir.read(warming.folder / "brush-at-temperature.tir")
     for beyond, end in ((20.0, low), (90.0, high)):
-        at_end, further = (warming.predict(**conditions, T_degC=T) for T in (end, beyond))
+        at_end = warming.predict(**conditions, T_degC=end)
+        with pytest.warns(
+            tir.TirWarning, match=f"T_degC is outside the tested temperatures, {low:.4g} to {high:.4g}"
+        ):
+            further = warming.predict(**conditions, T_degC=beyond)
         np.testing.assert_allclose(further.Fy_best_N, at_end.Fy_best_N, rtol=1e-12)
+        np.testing.assert_allclose(
+            of_file(file.at_temperature(beyond), conditions),
+            of_file(file.at_temperature(end), conditions),
+            rtol=1e-5,
+        )
+
+
+def test_prediction_and_file_move_alike_with_temperature(warming: Built):
+    """They differ by the model error; this hardly moves, because the tyre is a brush whose side force falls as a whole."""
+    conditions = drawn(200, alpha=9.5, gamma=4.0, loads=(800.0, 3400.0))
+    file = tir.read(warming.folder / "brush-at-temperature.tir")
+    best = [warming.predict(**conditions, T_degC=T).Fy_best_N for T in (46.0, 58.0)]
+    own = [of_file(file.at_temperature(T), conditions) for T in (46.0, 58.0)]
+    moved, size = best[1] - best[0] - (own[1] - own[0]), np.abs(own[1] - own[0])
+    assert np.sqrt(np.mean(moved**2)) < 0.15 * np.sqrt(np.mean(size**2))
 
 
 def test_the_path_of_a_belt_is_straight(foreign: Built):
