@@ -10,9 +10,12 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
 from uncertainties import UFloat
 
+from mffit.measured.result import Measured
 from mffit.measured.uncertain import named
+from mffit.points import Points, main_path
 from mffit.rig_errors import DECLARED, AtZero
 
 READ = {
@@ -89,3 +92,12 @@ def camber_of_no_spin(phi_t: float, r_e: float, epsilon: float) -> float | None:
     """
     sine = phi_t * r_e / (1.0 - epsilon) if epsilon < 1.0 else math.inf
     return math.asin(sine) if abs(sine) < 1.0 else None
+
+
+def unspun(points: Points, measured: Measured) -> float | None:
+    """The camber [rad] at which the usual path of a disc gives no spin; None if it is not known, out of reach, or on a belt."""
+    row = measured.nominal
+    if row is None or row.epsilon_gamma is None or row.r_e is None:
+        return None
+    camber = camber_of_no_spin(main_path(points), row.r_e.value, row.epsilon_gamma.value)
+    return camber if camber and abs(camber) <= np.max(np.abs(points.gamma)) else None

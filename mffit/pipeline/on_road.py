@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-import numpy as np
-
 from mffit.config import Config
-from mffit.measured import Measured, camber_of_no_spin
-from mffit.points import Points, levels, main_path
+from mffit.measured import Measured, unspun
+from mffit.planning import was_coupled
+from mffit.points import Points
 from mffit.prediction import OnRoad, road_of
 from mffit.results import BuildResult
 
@@ -31,22 +30,7 @@ def _better(config: Config, points: Points, measured: Measured) -> Iterator[str]
     if not config.tyre.base:
         yield "a like tyre's file as base"
     camber = unspun(points, measured)
-    if camber is not None and not _was_coupled(points, camber):
+    if camber is not None and not was_coupled(points, camber):
         yield f"a sideslip sweep at {math.degrees(camber):.1f} deg of camber (no spin there)"
     if points.one_sided:
         yield "the other side of the disc"
-
-
-def unspun(points: Points, measured: Measured) -> float | None:
-    """The camber [rad] at which the usual path of a disc gives no spin; None if it is not known or out of reach."""
-    row = measured.nominal
-    if row is None or row.epsilon_gamma is None or row.r_e is None:
-        return None
-    camber = camber_of_no_spin(main_path(points), row.r_e.value, row.epsilon_gamma.value)
-    return camber if camber is not None and abs(camber) <= np.max(np.abs(points.gamma)) else None
-
-
-def _was_coupled(points: Points, camber: float) -> bool:
-    """Whether sideslip was run at a camber."""
-    near = np.abs(points.gamma - camber) < levels.CAMBER.tolerance
-    return bool(np.any(near & (np.abs(points.alpha) > levels.SIDESLIP.tolerance)))

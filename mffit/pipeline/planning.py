@@ -60,8 +60,8 @@ def plan(
     Parameters
     ----------
     config : path of a ``tyre.toml``, its content, or a loaded Config
-    goal : ``"eps_gamma"`` (direct method), ``"eps_gamma:joint"``, ``"bands"``, ``"bands:Mz"``, ``"file"`` or the name of a
-        coefficient; default the eps_gamma that the file's PECP1 comes from, on a flat track ``"bands"``
+    goal : ``"eps_gamma"`` (direct method), ``"eps_gamma:joint"``, ``"bands"``, ``"bands:Mz"``, ``"file"``, ``"road"`` or the
+        name of a coefficient; default the eps_gamma that the file's PECP1 comes from, on a flat track ``"bands"``
     runs : largest number of runs in the list
     without : kinds of runs that this rig cannot make, for example ``"other-side"``
     out : folder to write to; nothing is written if None

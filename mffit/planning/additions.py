@@ -37,6 +37,7 @@ class Addition:
     radius: float = 1.0  #: path radius over the programme's; negative: centre on the other side
     held: Literal["alpha", "gamma"] = "gamma"  #: angle that is held at ``side`` times ``held_deg``
     held_deg: Sequence[float] = (0.0,)  #: values of the held angle, one run each
+    unspun: bool = False  #: the held camber is that at which the path gives no spin
     pressures: Sequence[float] = (1.0,)  #: pressures over the programme's pressure, one run each
 
 
@@ -133,6 +134,16 @@ ADDITIONS = (
         reason="How camber changes the curves over sideslip is visible only where both angles act together.",
         lines=tuple(LineOfPoints("alpha", _SHARES, side=side) for side in (-1, 1)),
         held_deg=constants.COUPLED_CAMBERS,
+    ),
+    _on_disc(
+        id="unspun",
+        title="sideslip sweep at the camber without spin",
+        reason=(
+            "At this camber, sin(gamma) = phi_t r_e / (1 - eps_gamma), the wheel turns about the vertical as the disc does: "
+            "its contact sees a straight path, as on the road."
+        ),
+        lines=(LineOfPoints("alpha", _SHARES, side=1),),
+        unspun=True,
     ),
     Addition(
         id="pressure",

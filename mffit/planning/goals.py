@@ -12,8 +12,8 @@ from mffit.quantities import CHANNELS, DIRECT
 from mffit.rig import SIMULATED
 from tir.parameters import BY_NAME
 
-EPSILON, JOINT, BANDS, FILE = "eps_gamma", "eps_gamma:joint", "bands", "file"
-GOALS = (EPSILON, JOINT, BANDS, f"{BANDS}:Mz", FILE)
+EPSILON, JOINT, BANDS, FILE, ROAD = "eps_gamma", "eps_gamma:joint", "bands", "file", "road"
+GOALS = (EPSILON, JOINT, BANDS, f"{BANDS}:Mz", FILE, ROAD)
 """Goals as the user writes them; the name of a coefficient is a goal too."""
 
 
@@ -21,7 +21,7 @@ GOALS = (EPSILON, JOINT, BANDS, f"{BANDS}:Mz", FILE)
 class Goal:
     """The number whose uncertainty should decrease."""
 
-    kind: str  #: EPSILON (direct method), JOINT, BANDS, FILE or "coefficient"
+    kind: str  #: EPSILON (direct method), JOINT, BANDS, FILE, ROAD or "coefficient"
     name: str = ""  #: name of the coefficient, or channel of the bands
     unit: str = "-"
 
@@ -34,6 +34,7 @@ class Goal:
             JOINT: f"u({epsilon}) by the joint fit",
             BANDS: f"95 % band of {self.name}, rms",
             FILE: "95 % band of the file over its largest forces, rms",
+            ROAD: "95 % band of the road over its largest forces, rms",
         }.get(self.kind, f"u({self.name})")
 
 
@@ -41,7 +42,7 @@ keys(Goal, "kind name label unit")
 
 
 def read_goal(text: str, *, on_disc: bool, held: Collection[str] = ()) -> Goal:
-    """A goal from its text: ``eps_gamma``, ``bands``, ``file`` or a coefficient's name.
+    """A goal from its text: ``eps_gamma``, ``bands``, ``file``, ``road`` or a coefficient's name.
 
     Raises InputError if the goal is unknown, needs a disc, needs recordings of steps, or is a coefficient ``held`` by hand.
     """
@@ -55,8 +56,8 @@ def read_goal(text: str, *, on_disc: bool, held: Collection[str] = ()) -> Goal:
         raise InputError(
             f"{text} follows from recordings of steps, which a plan does not propose; `mffit build` says which one is missing"
         )
-    if text == FILE:
-        return Goal(FILE)
+    if text in (FILE, ROAD):
+        return Goal(text)
     if kind == EPSILON and rest in ("", "direct", "joint"):
         if not on_disc:
             raise InputError(

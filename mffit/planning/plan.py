@@ -106,7 +106,11 @@ def plan(
     """
     config = prospect.config
     u = prospect.u_of(goal)
-    possible = [run for run in candidates(config, prospect.points) if most and run.addition not in without]
+    possible = [
+        run
+        for run in candidates(config, prospect.points, prospect.unspun)
+        if most and run.addition not in without
+    ]
     progress(f"trying {len(possible)} runs one by one")
     trials = sorted((PlanStep(run, u([]), u([run])) for run in possible), key=lambda trial: trial.after)
     chosen = _without_superfluous(u, _chosen(u, possible, most, progress))

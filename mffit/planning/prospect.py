@@ -17,9 +17,10 @@ from mffit.fit.priors import scatter
 from mffit.fit.ranges import tested_ranges
 from mffit.fit.rig.rig_numbers import rig_numbers
 from mffit.fit.told import Priors, Told, numbers_told, told_by_run, told_by_sweeps
-from mffit.measured import Measured
+from mffit.measured import Measured, unspun
 from mffit.numbers import Numbers
-from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, Goal
+from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, ROAD, Goal
+from mffit.planning.road import RoadBand
 from mffit.planning.runs import PlannedRun, candidates, largest_slip, new_setups, swept
 from mffit.points import Points, levels, main_pressure, make_points
 from mffit.points.points import concatenate
@@ -88,7 +89,7 @@ class Prospect:
         search = found.search
         self.config, self.points, self.measured, self.found = config, points, measured, found
         self.problem, self.hand = search.problem, search.hand
-        self.simulation = search.problem.simulation
+        self.simulation, self.unspun = search.problem.simulation, unspun(points, measured)
         self.rig = tuple(n.name for n in search.numbers if error_of(n.name))
         self._fitted = priors_of(search)
         self._shown_now = self._shown([])
@@ -143,9 +144,13 @@ class Prospect:
     def u_of(self, goal: Goal) -> Callable[[Sequence[PlannedRun]], float]:
         """A function that returns the uncertainty of a goal, in its unit, after given runs; infinite if it is not measured."""
         curves = self._curves_of(goal) if goal.kind in (BANDS, FILE) else None
+        road = RoadBand(self.found, self._new_zeros) if goal.kind == ROAD else None
 
         def u(runs: Sequence[PlannedRun]) -> float:
-            if goal.kind in (EPSILON, JOINT):
+            found: float | None
+            if road is not None:
+                found = road.after(runs, self._new_of(runs), self._narrower(runs))
+            elif goal.kind in (EPSILON, JOINT):
                 found = self.direct(runs) if goal.kind == EPSILON else self.joint(runs)
             else:
                 posterior = self.as_built(runs)
@@ -164,6 +169,13 @@ class Prospect:
         """u(eps_gamma) that a build would state for the direct method."""
         found = self._direct(runs) if self.config.rig.on_disc else None
         return None if found is None else found.stated
+
+    def _narrower(self, runs: Sequence[PlannedRun]) -> dict[str, float]:
+        """By how much runs narrow the uncertainty with which the fit holds PECP1, if it is held."""
+        now, then = self._direct([]), self._direct(runs)
+        if PECP1 in self.hand.held or now is None or then is None or not now.held:
+            return {}
+        return {PECP1: then.held / now.held}
 
     def as_built(self, runs: Sequence[PlannedRun]) -> Numbers:
         """The numbers with PECP1 from the source that the file uses: held by hand, direct method, or joint fit."""
@@ -189,7 +201,7 @@ class Prospect:
         """Prior standard deviation of the coefficients that only longitudinal slip would free; empty if slip was run already."""
         if self.config.rig.on_disc or "Fx" in self.problem.channels:
             return {}
-        values, shown = self.found.tyre.values, self._shown(candidates(self.config, self.points))
+        values, shown = self.found.tyre.values, self._shown(candidates(self.config, self.points, self.unspun))
         return {
             name: row.stderr
             or scatter(name, float(values[name]), from_base=row.status == "base", curved=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
@@ -39,7 +40,7 @@ class PlannedRun:
     @property
     def name(self) -> str:
         """Stem of the run's files, unique among the candidates."""
-        angle = f"-{self.held_deg:.0f}deg" if self.held_deg else ""
+        angle = f"-{abs(self.held_deg):.0f}deg" if self.held_deg else ""
         pressure = f"-{self.pressure_kPa:.0f}kPa" if self.pressure_kPa else ""
         return f"{self.addition.id}-{self.load:.0f}N{angle}{pressure}"
 
@@ -51,9 +52,9 @@ keys(
 )
 
 
-def candidates(config: Config, points: Points) -> tuple[PlannedRun, ...]:
-    """Every run that this rig could add to these points."""
-    programme = _Programme(config, points)
+def candidates(config: Config, points: Points, unspun: float | None = None) -> tuple[PlannedRun, ...]:
+    """Every run that this rig could add to these points; ``unspun`` is the camber [rad] at which the path gives no spin."""
+    programme = _Programme(config, points, unspun)
     here = "disc" if config.rig.on_disc else "belt"
     return tuple(
         run
@@ -85,6 +86,12 @@ def _beyond(values: np.ndarray, kind: levels.LevelKind) -> np.ndarray:
     return out
 
 
+def was_coupled(points: Points, camber: float) -> bool:
+    """Whether sideslip was run at a camber [rad]."""
+    near = np.abs(points.gamma - camber) < levels.CAMBER.tolerance
+    return bool(np.any(near & _beyond(points.alpha, levels.SIDESLIP)))
+
+
 def largest_slip(points: Points) -> float:
     """Largest longitudinal slip that was run; a usual value if none was run."""
     largest = float(np.max(np.abs(points.kappa), initial=0.0))
@@ -95,9 +102,9 @@ def largest_slip(points: Points) -> float:
 class _Programme:
     """The present programme, and new set-points like its own."""
 
-    def __init__(self, config: Config, points: Points) -> None:
+    def __init__(self, config: Config, points: Points, unspun: float | None) -> None:
         main = main_pressure(points) & (points.direction > 0) & (points.mount > 0) & ~points.continuous
-        self.config = config
+        self.config, self.unspun = config, unspun
         self.points, self.main = points, points.select(main if np.any(main) else np.ones(len(points), bool))
         Fz = swept(self.main).Fz
         level = levels.labels(Fz, levels.LOAD)
@@ -122,6 +129,10 @@ class _Programme:
 
     def held_deg(self, addition: Addition, load: float) -> list[float]:
         """Held angles [deg] of an addition's runs; for coupled sweeps only those that the programme lacks at this load."""
+        if addition.unspun:
+            at = self.points.select(np.abs(np.log(self.points.Fz / load)) < levels.LOAD.tolerance)
+            lacking = [] if self.unspun is None or was_coupled(at, self.unspun) else [self.unspun]
+            return [round(math.degrees(camber), 1) for camber in lacking]
         if addition.held == "alpha" or addition.rig == "belt" or not any(addition.held_deg):
             return list(addition.held_deg)
         near = np.abs(np.log(self.main.Fz / load)) < levels.LOAD.tolerance

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from mffit.fit.by_hand import HELD_BY_HAND
 from mffit.planning import constants
 from mffit.planning.additions import BY_ID
-from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT
+from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, ROAD
 from mffit.planning.plan import Identified, NextRun, Plan
 from mffit.planning.runs import PlannedRun
 from mffit.quantities import CONDITIONS, DIRECT
@@ -41,7 +41,7 @@ def headline(plan: Plan) -> str:
 
 def measure(plan: Plan | NextRun) -> str:
     """The kind of uncertainty, for headings: u, or a 95 % band."""
-    return "95 % band" if plan.goal.kind in (BANDS, FILE) else "u"
+    return "95 % band" if plan.goal.kind in (BANDS, FILE, ROAD) else "u"
 
 
 def shown(plan: Plan | NextRun, u: float) -> str:
@@ -67,6 +67,8 @@ ESTIMATES = {
     "the posterior, linearised at the present solution",
     FILE: "the 95 % bands of Fx, Fy, Mx and Mz over their largest values: rms over sideslip, camber and slip at three loads, at "
     "which the wheel has been steered, leaned or driven so far. What was not measured counts with its prior",
+    ROAD: "the 95 % bands of Fy and Mz over their largest values on a straight path at nominal load, as `mffit predict` states "
+    "them: rms over the tested sideslip, upright and leaned, with what the formula misses, linearised at the present solution",
 }
 OF_COEFFICIENT = "the standard error in the file, from the posterior, linearised at the present solution"
 
@@ -77,7 +79,7 @@ def promise(plan: Plan) -> str:
     debiased = plan.config.spin.pecp1 == "debiased"
     which = " (debiased, without the line of finite spin)" if debiased else ""
     estimate = ESTIMATES.get(kind, OF_COEFFICIENT).replace("%s", which)
-    size = "" if kind in (BANDS, FILE) else " are standard uncertainties (k = 1) and"
+    size = "" if kind in (BANDS, FILE, ROAD) else " are standard uncertainties (k = 1) and"
     return f"The prediction is for {estimate}. All numbers{size} assume the noise of your present points."
 
 

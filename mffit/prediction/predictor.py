@@ -26,7 +26,7 @@ from tir.correction import share_of_load, slip_beyond
 from tir.frozen import ReadOnlyArrays
 
 
-class Left(NamedTuple):
+class Remaining(NamedTuple):
     """Shares (n,) of the model error at conditions where nothing was tested."""
 
     load: (
@@ -55,7 +55,7 @@ class MissedChannel(ReadOnlyArrays):
         return np.asarray(own @ own.T)
 
     def at(
-        self, settings: np.ndarray, slopes: np.ndarray, of_tyre: np.ndarray, left: Left
+        self, settings: np.ndarray, slopes: np.ndarray, of_tyre: np.ndarray, left: Remaining
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The model error (n,), the variance of the tyre's force (n,), and the variance of a reading of it (n,).
 
@@ -231,7 +231,7 @@ class Predictor:
         left = self._left(channel, points)
         return np.asarray(left.load * left.slip * np.mean(found, axis=0))
 
-    def _left(self, channel: MissedChannel, points: Points) -> Left:
+    def _left(self, channel: MissedChannel, points: Points) -> Remaining:
         """What is left of a channel's model error, by the rule of :class:`tir.correction.Correction`."""
         slip = np.ones(len(points))
         ends = {
@@ -239,7 +239,7 @@ class Predictor:
         }
         if "kappa" not in [one.name for one in channel.smooth.inputs]:
             slip = np.exp(-slip_beyond(points.kappa, points.alpha, *ends.get("kappa", (0.0, 0.0))))
-        return Left(np.asarray(share_of_load(points.Fz, max(self.lowest_load, 1e-9))), slip)
+        return Remaining(np.asarray(share_of_load(points.Fz, max(self.lowest_load, 1e-9))), slip)
 
     def points(self, tyre: Tyre, conditions: pd.DataFrame) -> Points:
         """The conditions as points; a missing temperature is NaN, other missing conditions get nominal values."""
@@ -325,7 +325,7 @@ def predictor(
     }
     channels = {
         name: MissedChannel(
-            own.smooth, own.components, own.missed, _root(own, kept, spread), own.noise, own.size
+            own.smooth, own.components, own.missed, root_with_held(own, kept, spread), own.noise, own.size
         )
         for name, own in left.channels.items()
     }
@@ -335,7 +335,7 @@ def predictor(
     return Predictor(main_path(points), names, channels, zeros, beside, T_range, float(np.min(points.Fz)))
 
 
-def _root(own: LinearisedChannel, kept: Sequence[int], spread: Mapping[int, float]) -> np.ndarray:
+def root_with_held(own: LinearisedChannel, kept: Sequence[int], spread: Mapping[int, float]) -> np.ndarray:
     """Root (m + k, r) of the covariance of the functions' weights and the numbers ``kept``.
 
     Numbers that the fit took as exact are not updated by the readings: they keep their prior standard deviation ``spread`` (by

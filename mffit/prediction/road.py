@@ -130,12 +130,11 @@ def road_of(
     from it, ``better`` says what would narrow the bands. Everything is the best estimate of :meth:`Predictor.predict` with its
     uncertainty, at the usual temperature.
     """
-    ends = {key: tested_limit(fitted, key) for key in ("ALPMIN", "ALPMAX", "CAMMIN", "CAMMAX")}
-    half = int(STEPS_OF_LINE) // 2
-    sideslip = np.linspace(-1.0, 1.0, 2 * half + 1) * max(-ends["ALPMIN"], ends["ALPMAX"])
-    camber = float(constants.USUAL_SHARE) * max(-ends["CAMMIN"], ends["CAMMAX"])
-    if not sideslip[-1] > UPRIGHT.rad:
+    at = postures(fitted)
+    if at is None:
         return None
+    sideslip, camber = at
+    half = len(sideslip) // 2
     tyre = _TyreOnRoad(known, fitted, normal)
     upright = tyre.curve(0.0, sideslip)
     k = round(half * float(constants.USUAL_SHARE))
@@ -146,9 +145,29 @@ def road_of(
         sideslip=float(sideslip[half + k]),
         sides={side: tyre.side(upright, rows, k) for side, rows in halves.items()},
         upright=upright,
-        leaned=tyre.curve(camber, sideslip) if camber > UPRIGHT.rad else None,
+        leaned=tyre.curve(camber, sideslip) if camber else None,
         better=better,
     )
+
+
+def postures(fitted: Tyre) -> tuple[np.ndarray, float] | None:
+    """Sideslip angles (n,) [rad] to both sides, and the camber [rad] of the leaned wheel, 0 if no camber was tested.
+
+    None if no sideslip was tested.
+    """
+    ends = {key: tested_limit(fitted, key) for key in ("ALPMIN", "ALPMAX", "CAMMIN", "CAMMAX")}
+    most, camber = (max(-ends[f"{name}MIN"], ends[f"{name}MAX"]) for name in ("ALP", "CAM"))
+    if not most > UPRIGHT.rad:
+        return None
+    half = int(STEPS_OF_LINE) // 2
+    leaned = float(constants.USUAL_SHARE) * camber
+    return np.linspace(-1.0, 1.0, 2 * half + 1) * most, leaned if leaned > UPRIGHT.rad else 0.0
+
+
+def conditions(fitted: Tyre, camber: float, sideslip: np.ndarray) -> pd.DataFrame:
+    """The conditions of a curve on the road, for :meth:`Predictor.points`."""
+    angles = {"alpha_deg": np.degrees(sideslip), "gamma_deg": math.degrees(camber)}
+    return pd.DataFrame({**angles, "Fz_N": float(fitted["FNOMIN"]), PATH: 0.0})
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,14 +178,9 @@ class _TyreOnRoad:
     fitted: Tyre
     normal: Tyre | None
 
-    def at(self, camber: float, sideslip: np.ndarray) -> pd.DataFrame:
-        """The conditions of a curve."""
-        angles = {"alpha_deg": np.degrees(sideslip), "gamma_deg": math.degrees(camber)}
-        return pd.DataFrame({**angles, "Fz_N": float(self.fitted["FNOMIN"]), PATH: 0.0})
-
     def curve(self, camber: float, sideslip: np.ndarray) -> RoadCurve:
         """The best estimate over sideslip, and how far the file for turn slip off is from it."""
-        points = self.known.points(self.fitted, self.at(camber, sideslip))
+        points = self.known.points(self.fitted, conditions(self.fitted, camber, sideslip))
         model = Simulation.of(self.fitted, turn_slip=self.known.curved)
         found = self.known.forces(model, model, points, SIDEWAYS)
         off = {}
@@ -198,6 +212,6 @@ class _TyreOnRoad:
         size = np.abs(curve.best[name][rows])
         peak = int(np.argmax(size))
         ends = curve.sideslip[rows[[peak, -1]]]
-        u_fall = self.known.u_between(self.fitted, self.at(curve.camber, ends), name)
+        u_fall = self.known.u_between(self.fitted, conditions(self.fitted, curve.camber, ends), name)
         kind = Quantity if size[peak] - size[-1] > COVERAGE_FACTOR_95 * u_fall else AtLeast
         return kind(float(size[peak]), float(curve.u[name][rows[peak]]), CHANNELS[name].unit)

@@ -22,9 +22,11 @@ from mffit.pipeline.refining import finite_spin_bias
 from mffit.planning import ADDITIONS, addition_named, read_goal, wording
 from mffit.planning.prospect import Prospect
 from mffit.planning.runs import candidates
+from mffit.points import concatenate
 from mffit.report.text import plan_summary
 from mffit.rig import Simulation
 from mffit.rig_errors import CALIBRATED
+from mffit.scatter import rms
 from tests.browser import assert_readable
 
 FREE = {"PECP1": math.inf}
@@ -108,6 +110,7 @@ SETTLED = {
     "sideslip": ("PDY1", "QBZ1"),
     "camber": ("PKY6", "PKY7"),
     "coupled": ("PDY3", "PVY3", "QDTP1"),
+    "unspun": ("QDTP1", "QDZ1"),
     "pressure": ("PPY1", "PPY3", "PPZ1"),
     "load": ("PKY2", "PEY2"),
 }
@@ -117,7 +120,8 @@ ON_DISCS = [addition for addition in ADDITIONS if addition.rig != "belt"]
 
 @pytest.mark.parametrize("addition", ON_DISCS, ids=lambda addition: addition.id)
 def test_an_addition_settles_what_it_names(result, knowledge, addition):
-    runs = [run for run in candidates(result.config, result.points) if run.addition is addition]
+    every = candidates(result.config, result.points, knowledge.unspun)
+    runs = [run for run in every if run.addition is addition]
     before = knowledge.posterior([], FREE).stderr
     after = [knowledge.posterior([run], FREE).stderr for run in runs]
     for name in SETTLED[addition.id]:
@@ -194,6 +198,49 @@ def test_the_promise_is_met_within_a_fifth_on_the_virtual_rig(result, plan, long
         assert found == pytest.approx(of_joint.stderr[planned], rel=0.2), name
 
 
+def band_of_road(result) -> float:
+    """The 95 % bands of the road that a build states, rms over its curves, over the largest forces of the upright wheel."""
+    road = result.road
+    shares = [
+        1.96
+        * rms(np.concatenate([curve.u[name] for curve in road.curves.values()]))
+        / np.max(np.abs(road.upright.best[name]))
+        for name in ("Fy", "Mz")
+    ]
+    return rms(np.array(shares))
+
+
+@pytest.fixture(scope="module")
+def to_the_road(result):
+    return plan_of(result, read_goal("road", on_disc=True), runs=1)
+
+
+def test_the_band_of_the_road_is_that_of_the_build(result, to_the_road):
+    assert to_the_road.now == pytest.approx(band_of_road(result), rel=0.02)
+    assert all(trial.after <= 1.001 * trial.before for trial in to_the_road.trials)
+
+
+def test_the_band_of_the_road_narrows_as_promised_on_the_virtual_rig(plan, longer, to_the_road):
+    """With the runs of the list for eps_gamma, the first of which is also tried alone for the road."""
+    run = plan.steps[0].run
+    (promised,) = [trial.after for trial in to_the_road.trials if trial.run.name == run.name]
+    assert promised < to_the_road.now
+    assert band_of_road(longer) == pytest.approx(promised, rel=0.3)
+
+
+def test_a_run_at_the_camber_without_spin_is_tried_for_the_road(result, to_the_road):
+    """There the file's own spin, phi_t - (1 - eps_gamma) sin(gamma) / r_e, is zero; where it was run, it is not tried again."""
+    unspun = [trial.run for trial in to_the_road.trials if trial.run.addition.id == "unspun"]
+    row = result.measured.nominal
+    for run in unspun:
+        spin = run.points.phi_t - (1.0 - row.epsilon_gamma.value) * np.sin(run.points.gamma) / row.r_e.value
+        assert np.max(np.abs(spin)) < 0.01 * abs(run.points.phi_t[0])
+        assert np.ptp(run.points.alpha) > 0.1
+    camber = unspun[0].points.gamma[0]
+    again = concatenate([result.points, *(run.points for run in unspun)])
+    assert not [one for one in candidates(result.config, again, camber) if one.addition.id == "unspun"]
+
+
 def test_the_bias_of_finite_spin_is_that_of_the_true_tyre(longer):
     """A model that holds PECP1 at the biased value compensates with other spin coefficients and would find a third of it."""
     measured = longer.measured
@@ -247,10 +294,10 @@ def test_sheets_are_in_the_rigs_axes_and_their_path_is_declared(result, plan):
     assert "path_radius" not in text
 
 
-def test_the_additions_to_tyre_toml_are_valid_toml_behind_it(result):
+def test_the_additions_to_tyre_toml_are_valid_toml_behind_it(result, knowledge):
     """A second [rig] table would be a TOML error."""
     config = result.config
-    runs = candidates(config, result.points)
+    runs = candidates(config, result.points, knowledge.unspun)
     assert {run.addition for run in runs} == set(ON_DISCS)
     read = tomllib.loads("[rig]\naxes = 'iso'\n" + additions(config, runs))
     assert {row["file"] for row in read["sweep"]} == {f"{r.name}.csv" for r in runs}
