@@ -26,3 +26,5 @@ def test_spin_reproduces_the_published_tables(name):
     assert measured.epsilon_gamma.value == pytest.approx(epsilon, abs=0.0005)
     assert measured.epsilon_gamma.u == pytest.approx(u, abs=0.0003)
     assert measured.F_phit.u == pytest.approx(u_F, abs=0.1)
+    assert measured.published.epsilon_gamma == pytest.approx(measured.epsilon_gamma, abs=1e-6)
+    assert measured.published.F_phit.u == pytest.approx(u_F, abs=0.1)

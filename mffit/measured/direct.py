@@ -38,6 +38,7 @@ from mffit.measured.epsilon import (
 )
 from mffit.measured.evidence import DirectEvidence, evidence_of, rest_of_play
 from mffit.measured.one_way import one_way_lag
+from mffit.measured.published import published
 from mffit.measured.radii import effective_radius_at
 from mffit.measured.result import (
     NO_FIT,
@@ -118,6 +119,7 @@ def measure(
         epsilon_gamma_model=after.epsilon_gamma,
         made=stated.made,
         reasons=stated.reasons,
+        published=published(evidence, points, row) if row else None,
     )
 
 

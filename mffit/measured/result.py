@@ -206,6 +206,32 @@ keys(
     "±alpha_M_deg ±alpha_0_deg=misalignment ±ply_steer_deg ±conicity_N F_forward_N F_backward_N",
     u_epsilon_gamma_moment=lambda _: None,
 )
+
+
+class StepFromPaper(NamedTuple):
+    """What one step from the published procedure to the result of this program changes."""
+
+    what: str
+    change: float  #: of the turn-slip force, or of the camber force at the angle of the secant [N]
+    epsilon_gamma: float  #: after this step and those before it
+
+
+keys(StepFromPaper, "what change_N=change epsilon_gamma")
+
+
+@dataclass(frozen=True, slots=True)
+class PublishedResult:
+    """Results of the published procedure at one load; u with k = 1."""
+
+    epsilon_gamma: Quantity
+    F_phit: Quantity  #: [N]
+    C_gamma: float  #: secant, without uncertainty in the paper [N/rad]
+    corrections: tuple[StepFromPaper, ...]  #: in order, up to eps_gamma as this program measures it
+
+
+keys(PublishedResult, "±epsilon_gamma ±F_phit_N C_gamma_N_per_rad=C_gamma corrections")
+
+
 NO_LOAD = {"load_N": None, **{key: None for name in KEYS.values() for key in with_u(name, None)}}
 """The numbers at the nominal load if nothing was measured there."""
 
@@ -283,6 +309,7 @@ class Measured(Brief):
     )
     made: Made | None = None  #: of ``mffit spin`` only
     reasons: tuple[str, ...] = ()  #: reasons against trust, of ``mffit spin`` only
+    published: PublishedResult | None = None  #: at the nominal load; None without eps_gamma or secant
 
     @property
     def trusted(self) -> bool:
@@ -390,7 +417,7 @@ keys(
     Measured,
     "**judged **at_nominal ±epsilon_gamma=epsilon_of_file ±epsilon_gamma_direct=epsilon_gamma epsilon_gamma_source "
     "epsilon_gamma_model ±epsilon_gamma_debiased pecp1 pecp2 u_pecp2 budget budgets "
-    "expanded=nominal.expanded ±camber_skew_deg misaligned=axis_off coverage_factor setups setup_scatter drift notes "
+    "expanded=nominal.expanded ±camber_skew_deg misaligned=axis_off coverage_factor setups setup_scatter drift published notes "
     "per_load [made]",
     judged=lambda found: (
         {}

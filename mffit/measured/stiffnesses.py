@@ -154,7 +154,7 @@ def load_slopes(evidence: DirectEvidence, group: LoadGroup) -> tuple[LoadSlopes,
     """The stiffnesses at one load, and warnings; from odd parts on a disc, from the readings themselves on a straight path."""
     C_alpha = cornering_stiffness(evidence, group)
     assumed = assumed_stiffness(evidence, group, C_alpha)
-    camber, backward = (_camber_estimates(evidence, group, assumed, direction) for direction in (1, -1))
+    camber, backward = (camber_estimates(evidence, group, assumed, direction) for direction in (1, -1))
     chosen, trouble = _chosen(evidence.config, camber, group.load)
     chosen_backward, _ = _chosen(evidence.config, backward, group.load)
     if evidence.rig is None:
@@ -165,7 +165,7 @@ def load_slopes(evidence: DirectEvidence, group: LoadGroup) -> tuple[LoadSlopes,
     slope, secant = _number(camber.slope, CAMBER, shape), _number(camber.secant, CAMBER)
     guessed = False
     if C_alpha is None and assumed is not None:
-        without, share = _camber_estimates(evidence, group, None, 1), assumed / assumed.nominal_value - 1.0
+        without, share = camber_estimates(evidence, group, None, 1), assumed / assumed.nominal_value - 1.0
         slope = _with_play(slope, camber.slope, without.slope, share)
         secant = _with_play(secant, camber.secant, without.secant, share)
         guessed = slope is not None and evidence.rig is not None
@@ -229,7 +229,7 @@ def _bend(evidence: DirectEvidence, group: LoadGroup) -> UFloat | None:
     return named(scale * found[2], scale * errors[2], "bend of the sideslip curve", "N/rad^2", kind="A")
 
 
-def _camber_estimates(
+def camber_estimates(
     evidence: DirectEvidence, group: LoadGroup, C_alpha: UFloat | None, direction: int
 ) -> Estimates:
     """Slope and secant of the camber sweep in one direction, less the force of the sideslip that backlash causes in it."""

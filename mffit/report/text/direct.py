@@ -111,6 +111,9 @@ def estimates(measured: Measured) -> str:
     row = measured.nominal
     found = _other_estimates(measured, row) if row is not None else []
     lines = [f"{'from':<10} {', '.join(found)}"] if found else []
+    if measured.published is not None:
+        paper = stated(measured.published.epsilon_gamma)
+        lines.append(f"{'published':<10} {paper} (the paper's procedure: (5) or (6), secant (20), u by (24))")
     if measured.pecp1 is not None:
         lines.append(f"{'file':<10} PECP1 {number(measured.pecp1, 4)}, PECP2 {number(measured.pecp2, 4)}")
     return "\n".join(lines)
