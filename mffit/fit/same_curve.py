@@ -30,6 +30,7 @@ SAME_CURVE = (
     ("RCY1",),
     ("RVY4",),
     ("RVY6", "RVY5"),
+    ("RVY5", "RVY1", "RVY2", "RVY3"),
     ("QBZ1", "QBZ2", "QBZ3", "QEZ4", "QEZ5"),
     ("QBZ9", "QBZ10"),
     ("QCZ1", "QEZ4", "QEZ5"),
@@ -74,10 +75,10 @@ def tyre_in_one_form(tyre: Tyre) -> Tyre:
 
 
 def with_expected_signs(values: Mapping[str, Any], expected: Mapping[str, float]) -> dict[str, float]:
-    """Coefficients whose sign changes no force, with the sign of their expected values."""
-    return {
-        name: -float(values[name])
-        for group in SAME_CURVE
-        if expected.get(group[0], 0.0) * float(values[group[0]]) < 0.0
-        for name in group
-    }
+    """Coefficients to replace by their negatives, at the same forces, so that the first of each group has its expected sign."""
+    found: dict[str, float] = {}
+    for group in SAME_CURVE:
+        here = {name: found.get(name, float(values[name])) for name in group}
+        if expected.get(group[0], 0.0) * here[group[0]] < 0.0:
+            found |= {name: -x for name, x in here.items()}
+    return {name: x for name, x in found.items() if x != values[name]}

@@ -34,9 +34,12 @@ def conditions(points: Points) -> list[np.ndarray]:
 
 
 def _interpolated(points: Points, index: np.ndarray, angle: np.ndarray, at: float) -> dict[str, float] | None:
-    """Readings at ``at`` [deg], interpolated along some points; None outside their range or with too few angles."""
+    """Readings at ``at`` [deg], interpolated along some points; None clearly outside their range or with too few angles."""
     angles, own = np.unique(np.round(angle[index], 3), return_inverse=True)
-    if len(angles) < constants.FEWEST_ANGLES_TO_INTERPOLATE or not angles[0] <= at <= angles[-1]:
+    if len(angles) < constants.FEWEST_ANGLES_TO_INTERPOLATE:
+        return None
+    first, last = constants.BEYOND_THE_END * np.diff(angles)[[0, -1]]
+    if not angles[0] - first <= at <= angles[-1] + last:
         return None
     from scipy.interpolate import PchipInterpolator  # loads in a third of a second, which other data save
 
@@ -90,8 +93,8 @@ def split(points: Points) -> Parts:
     """Decompose Fy and Mz of every point by mirror symmetry.
 
     The mirror of a point is a measured one within tolerance, if possible of the same sweep; otherwise readings are interpolated
-    over alpha at the mirrored camber, or over gamma at the mirrored sideslip, within one condition and without extrapolation. On
-    a straight path, which has no turn slip to remove, all points stay unpaired, without a remark.
+    over alpha at the mirrored camber, or over gamma at the mirrored sideslip, within one condition and hardly beyond
+    its ends. On a straight path, which has no turn slip to remove, all points stay unpaired, without a remark.
     """
     n = len(points)
     partner = np.full(n, -1)

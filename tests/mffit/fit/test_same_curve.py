@@ -27,3 +27,10 @@ def test_signs_that_change_no_force_are_those_that_are_expected():
             np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-8, err_msg=str(group))
         assert with_expected_signs(other.values, dict(true.values)) == {name: true[name] for name in group}
     assert with_expected_signs(true.values, dict(true.values)) == {}
+
+
+def test_a_curve_that_two_groups_reverse_has_one_form():
+    """Reversed RVY6 and RVY1-3 are RVY5 and RVY6 reversed, and then RVY5 with RVY1-3: the same force, and all signs expected."""
+    true = dict(belt.truth().replace(RVY1=0.02, RVY2=-0.03, RVY3=0.1, RVY5=1.9, RVY6=12.0).values)
+    names = ("RVY6", "RVY1", "RVY2", "RVY3")
+    assert with_expected_signs({**true, **{n: -true[n] for n in names}}, true) == {n: true[n] for n in names}

@@ -37,6 +37,16 @@ def test_shifted_set_points_are_interpolated_along_the_sweep():
     np.testing.assert_allclose(parts.Fy_odd[inside], odd[inside], atol=2.0)
 
 
+def test_ends_that_a_rig_holds_to_a_twentieth_of_a_step_are_mirrors():
+    """Steps of 4 deg, the ends of the grid 0.15 deg apart: both have a mirror, 1 % off."""
+    points, odd, _ = sweep(np.array([-4.1, 0.02, 3.95]))
+    parts = split(points)
+    assert parts.unpaired == ()
+    np.testing.assert_allclose(parts.Fy_odd, odd, atol=0.01 * np.max(np.abs(odd)))
+    apart, _, _ = sweep(np.array([-4.5, 0.0, 3.95]))
+    assert len(split(apart).unpaired) == 1
+
+
 def test_points_without_mirror_are_listed_and_never_filled():
     points, _, _ = sweep(np.array([-1.0, 0.0, 1.0, 5.0]), sweep_names=("camber.csv",))
     parts = split(points)
