@@ -26,6 +26,7 @@ from mffit.fit.plan import FitPlan
 from mffit.fit.polish import refitted
 from mffit.fit.problem import FitProblem
 from mffit.fit.result import FitResult
+from mffit.fit.rig.rig_numbers import scatter_of_setups
 from mffit.fit.rig.zeros import epsilon_gamma_of_model
 from mffit.fit.wheel.vertical import vertical_sentence
 from mffit.fit.wording import (
@@ -93,11 +94,12 @@ def fit(
     beside = Beside(radii, steps)
     made = deliver(config, known, points, base, fitted, beside)
     files = made.files
-    temperature = None
+    temperature, setups = None, scatter_of_setups(config, measured)
     if found.at_temperature:
         special = deliver(config, known, points, base, full, beside, only=use)
         own = of_file(special.files, use, special.coefficients)
-        temperature = at_temperature(found, points, special.files.by_use[use], own, left_by_formula)
+        file = special.files.by_use[use]
+        temperature = at_temperature(found, points, file, own, left_by_formula, setups)
 
     runs = between_runs(found, points)
     confounded = confoundings(replace(full, problem=at_reference(config, full.problem)))
@@ -106,7 +108,8 @@ def fit(
     simulation = Simulation(tyre.values, turn_slip=config.rig.on_disc)
     found_rig = {name: value for name, (value, _) in fitted.rig_stated.items()}
     known_forces, with_zeros = (
-        predictor(points, left_by_file, found_rig, exact) for exact in ((), zeros_of_rig(fitted.zeros))
+        predictor(points, left_by_file, found_rig, exact, setups=setups)
+        for exact in ((), zeros_of_rig(fitted.zeros))
     )
     wide = bands(known_forces, fitted.held, simulation, points, with_zeros)
     modelled, others = nuisance_sentences(config.tyre.name, found, temperature, runs, channels)

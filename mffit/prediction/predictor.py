@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -100,6 +101,7 @@ class PredictedForce(ReadOnlyArrays):
     best: np.ndarray  #: best estimate: force of the fitted model plus the estimated model error
     variance: np.ndarray  #: variance of the best estimate as the mean force of the tyre
     of_run: np.ndarray  #: variance of a reading of a new run on the same rig around the best estimate
+    of_setup: np.ndarray  #: the same after the rig was set up anew, with other zeros
 
     @property
     def u_file(self) -> np.ndarray:
@@ -120,6 +122,8 @@ class Predictor:
     """Effects of the tyre for which a property file has no coefficient, and its temperature terms."""
     T_range: tuple[float, float] | None = None  #: tested temperatures [degC], to which the terms are held
     lowest_load: float = 0.0  #: lowest tested load [N], below which the model error falls with the load
+    setups: Mapping[str, float] = field(default_factory=dict)
+    """Standard deviation of the zeros from one set-up of the rig to the next."""
 
     @property
     def curved(self) -> bool:
@@ -134,7 +138,7 @@ class Predictor:
         ``tyre`` is the plain file of the build, ``fitted`` that of the fitted model; on a disc it differs from a plain file for
         turn slip off. Of the conditions, ``alpha_deg``, ``gamma_deg`` and ``Fz_N`` are required, other columns of a sweep and
         ``phi_t_per_m`` optional. Each channel, here Fy, gets ``Fy_N``, ``u_Fy_N``, ``Fy_best_N``, ``u_Fy_best_N``,
-        ``u_Fy_run_N``.
+        ``u_Fy_run_N``, ``u_Fy_setup_N``.
         """
         points = self.points(tyre, conditions)
         plain = Simulation.of(tyre, turn_slip=tyre.turn_slip)
@@ -146,6 +150,7 @@ class Predictor:
             found[column(name, "best")] = one.best
             found[f"u_{column(name, 'best')}"] = np.sqrt(one.variance)
             found[f"u_{column(name, 'run')}"] = np.sqrt(one.of_run)
+            found[f"u_{column(name, 'setup')}"] = np.sqrt(one.of_setup)
         return found
 
     def forces(
@@ -180,15 +185,17 @@ class Predictor:
         fitted = fitted.with_numbers(self.beside)
         plain = file.readings(points, names)
         forces, slopes = fitted.sensitivities(points, self.names, names)
+        by_zeros = fitted.sensitivities(points, [*self.setups], names)[1]
         as_read = fitted.with_numbers(self.zeros).readings(points, names)
         found = {}
         for name in names:
             channel = self.channels[name]
             missed, variance, of_reading = self._missed(channel, points, slopes[name])
             best = forces[name] + missed
-            of_rig = (as_read[name] - forces[name]) ** 2 + channel.noise**2
-            of_run = of_reading + channel.components.run_variance(best) + of_rig
-            found[name] = PredictedForce(plain[name], best, variance, of_run)
+            tight = of_reading + channel.components.run_variance(best) + channel.noise**2
+            of_run = tight + (as_read[name] - forces[name]) ** 2
+            of_setup = tight + by_zeros[name] ** 2 @ np.array([*self.setups.values()]) ** 2
+            found[name] = PredictedForce(plain[name], best, variance, of_run, of_setup)
         return found
 
     def u_between(self, fitted: Tyre, conditions: pd.DataFrame, channel: str) -> float:
@@ -280,10 +287,11 @@ class Predictor:
 def _mixed(each: Sequence[PredictedForce]) -> PredictedForce:
     """The prediction where one of several conditions holds, none of which is stated."""
     best = np.array([one.best for one in each])
-    variance, of_run = (
-        np.mean([getattr(one, name) for one in each], axis=0) for name in ("variance", "of_run")
+    variance, of_run, of_setup = (
+        np.mean([getattr(one, name) for one in each], axis=0) for name in ("variance", "of_run", "of_setup")
     )
-    return PredictedForce(each[0].file, best.mean(axis=0), variance, of_run + best.var(axis=0))
+    scatter = best.var(axis=0)
+    return PredictedForce(each[0].file, best.mean(axis=0), variance, of_run + scatter, of_setup + scatter)
 
 
 def _settings(points: Points, inputs: Sequence[Input]) -> Iterator[np.ndarray]:
@@ -301,11 +309,12 @@ def predictor(
     rig: Mapping[str, float],
     known: Collection[str] = (),
     terms: Collection[str] = (),
+    setups: Mapping[str, float] = MappingProxyType({}),
 ) -> Predictor:
     """The predictor of a build, from the linear model of its residuals and the fitted rig errors.
 
     Rig errors ``known`` are taken as exact, to find how much they widen the bands. ``terms`` are names of the temperature terms
-    of the fit, with their reference.
+    of the fit, with their reference. ``setups`` are standard deviations of zeros from set-up to set-up.
     """
     zeros: dict[str, float] = {}
     for number, value in rig.items():
@@ -332,7 +341,9 @@ def predictor(
     names = tuple(left.numbers[i].name for i in kept)
     beside = {name: rig[name] for name in (*(error.name for error in BESIDE), *terms) if name in rig}
     T_range = (float(np.nanmin(points.T)), float(np.nanmax(points.T))) if terms else None
-    return Predictor(main_path(points), names, channels, zeros, beside, T_range, float(np.min(points.Fz)))
+    return Predictor(
+        main_path(points), names, channels, zeros, beside, T_range, float(np.min(points.Fz)), setups
+    )
 
 
 def root_with_held(own: LinearisedChannel, kept: Sequence[int], spread: Mapping[int, float]) -> np.ndarray:

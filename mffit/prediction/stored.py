@@ -43,6 +43,7 @@ def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
         "coefficients": found.names,
         "zeros": dict(found.zeros),
         "beside": dict(found.beside),
+        "setups": dict(found.setups),
         "T_range_degC": found.T_range,
         "lowest_load_N": found.lowest_load,
         "channels": {
@@ -101,7 +102,8 @@ def predict(folder: str | Path, conditions: str | Path | pd.DataFrame) -> pd.Dat
         The conditions in the units of their names, and for each fitted channel, here Fy: ``Fy_N``, the force of the plain file;
         ``u_Fy_N``, the standard deviation of a reading of a new run around it; ``Fy_best_N``, the best estimate, with the
         estimated model error; ``u_Fy_best_N``, its standard uncertainty as the tyre's mean force; ``u_Fy_run_N``, the standard
-        deviation of a reading of a new run around it. Columns with these names in the conditions are replaced.
+        deviation of a reading of a new run around it; ``u_Fy_setup_N``, the same after the rig was set up anew. Columns with
+        these names in the conditions are replaced.
 
     Raises
     ------
@@ -157,7 +159,7 @@ def _predictor(content: dict[str, Any]) -> Predictor:
         lowest_load=float(content["lowest_load_N"]),
         **{
             key: {ERROR_OF[name].name: float(value) for name, value in content[key].items()}
-            for key in ("zeros", "beside")
+            for key in ("zeros", "beside", "setups")
         },
     )
 

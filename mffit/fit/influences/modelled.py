@@ -103,8 +103,11 @@ def at_temperature(
     file: FileFigures,
     coefficients: Mapping[str, Coefficient],
     left: LinearisedFit,
+    setups: Mapping[str, float],
 ) -> AtTemperature:
-    """The record of a fit that models the temperature; ``left`` is the linear model of its residuals."""
+    """The record of a fit that models the temperature; ``left`` is the linear model of its residuals, ``setups`` the standard
+    deviations of zeros from set-up to set-up.
+    """
     full = found.full
     terms = {name: full.rig[name] for name in SCALED_BY if name in full.rig}
     rig, T_ref = {name: value for name, (value, _) in full.rig_stated.items()}, full.simulation.faults[T_REF]
@@ -123,7 +126,7 @@ def at_temperature(
         left_out=verdict.beside,
         left_out_plain=verdict.without,
         moved=_moved(found),
-        prediction=predictor(points, left, {**rig, T_REF: T_ref}, terms=(*terms, T_REF)),
+        prediction=predictor(points, left, {**rig, T_REF: T_ref}, terms=(*terms, T_REF), setups=setups),
     )
 
 

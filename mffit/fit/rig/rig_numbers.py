@@ -103,12 +103,23 @@ def held_rig(
             return False
         return not BY_NAME[name].of_setup or (name in unseen and len(setups) < 2)
 
-    usual = USUAL_CORNERING_STIFFNESS * config.tyre.nominal_load
-    declared = declared_rig(config.rig, measured.C_alpha.value if measured.C_alpha else usual)
+    declared = _declared(config, measured, config.tyre.nominal_load)
     held = {name: prior.u for name, prior in declared.items() if is_held(name)}
     if SIDESLIP_ZERO in held:
         held[SIDESLIP_ZERO] = _with_lag(held[SIDESLIP_ZERO], measured)
     return held
+
+
+def scatter_of_setups(config: Config, measured: Measured) -> dict[str, float]:
+    """By zero of the rig, its standard deviation from set-up to set-up; a misalignment that was found is not part of it."""
+    declared = _declared(config, measured, config.tyre.nominal_load)
+    return {name: prior.u for name, prior in of_a_setup(declared, measured).items() if prior.u > 0.0}
+
+
+def _declared(config: Config, measured: Measured, load: float) -> dict[str, Declaration]:
+    """The declared rig errors; the measured cornering stiffness, or the usual one at ``load`` [N], turns forces into angles."""
+    usual = USUAL_CORNERING_STIFFNESS * load
+    return declared_rig(config.rig, measured.C_alpha.value if measured.C_alpha else usual)
 
 
 def _with_lag(u: float, measured: Measured) -> float:
@@ -127,12 +138,10 @@ def _sideways(
     """The free numbers of the rig errors that act on Fy and Mz."""
     several = len(setups) > 1
     spin = config.rig.on_disc and any(row.F_phit is not None for row in measured.per_load)
-    usual = USUAL_CORNERING_STIFFNESS * (measured.F_phit_load if spin else config.tyre.nominal_load)
+    load = measured.F_phit_load if spin else config.tyre.nominal_load
     declared = {
         name: prior
-        for name, prior in declared_rig(
-            config.rig, measured.C_alpha.value if measured.C_alpha else usual
-        ).items()
+        for name, prior in _declared(config, measured, load).items()
         if not _of_other_channels(name) and not BY_NAME[name].is_gain
     }
     if not spin:
@@ -155,29 +164,32 @@ def _sideways(
     return tuple(_number(name, prior) for name, prior in declared.items())
 
 
+def of_a_setup(declared: Mapping[str, Declaration], measured: Measured) -> dict[str, Declaration]:
+    """The zeros of any set-up of a rig as ``declared``; repeated set-ups that scatter more widen that of Fy.
+
+    No key of [rig] declares some, such as that of Mz; on a disc with one set-up the residual torque absorbs it.
+    """
+    zeros = {error.name: error for error in ZEROS}
+    found = {name: prior for name, prior in declared.items() if name in zeros}
+    found |= {n: Declaration(e.undisturbed, e.spread) for n, e in zeros.items() if not e.declared}
+    if measured.setup_scatter is not None and "F0_N" in found:
+        value, u = found["F0_N"]
+        found["F0_N"] = Declaration(value, math.hypot(u, measured.setup_scatter.excess))
+    return found
+
+
 def _of_setups(
     declared: Mapping[str, Declaration], measured: Measured, setups: Sequence[str]
 ) -> tuple[FreeNumber, ...]:
     """The free numbers of a rig with named set-ups, or with one set-up named ""."""
     zeros = {error.name for error in ZEROS}
-    # No key of [rig] declares these zeros, such as that of Mz; on a disc with one set-up the residual torque absorbs it.
-    undeclared = {
-        error.name: Declaration(error.undisturbed, error.spread) for error in ZEROS if not error.declared
-    }
     found = [_number(name, prior) for name, prior in declared.items() if name not in zeros]
-    scatter = measured.setup_scatter
-    for name, (value, u) in {**declared, **undeclared}.items():
-        if name not in zeros:
-            continue
-        if scatter is not None and name == "F0_N":
-            u = math.hypot(u, scatter.excess)
+    for name, (value, u) in of_a_setup(declared, measured).items():
+        own = _with_lag(u, measured) if name == SIDESLIP_ZERO else u
         for setup in setups:
-            off = 0.0
-            if name == SIDESLIP_ZERO:
-                off = abs(_misaligned(measured, setup))
-                u = _with_lag(u, measured)
+            off = abs(_misaligned(measured, setup)) if name == SIDESLIP_ZERO else 0.0
             reach = constants.RIG_ERROR_REACH if setup else constants.FLAT_TRACK_ZERO_REACH
-            found.append(_number(name, Declaration(value, max(u, off)), setup, reach))
+            found.append(_number(name, Declaration(value, max(own, off)), setup, reach))
     return tuple(found)
 
 

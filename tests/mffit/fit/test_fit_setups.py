@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 from small_rigs import FY, MZ, SAMPLE, disc, simulated, truth
 
@@ -83,6 +85,17 @@ def test_json_and_property_file_hold_the_zeros_by_set_up(result, project):
     assert {n: found[n] for n in NAMES} == pytest.approx({n: result.fit.rig[n][0] for n in NAMES}, rel=1e-5)
     page = (project / "out" / "report.html").read_text(encoding="utf-8")
     assert "Set-ups of the rig" in page
+
+
+def test_a_reading_of_a_new_set_up_lies_off_by_its_zeros(result, project):
+    """At zero these are the declared ones alone, load cell, sideslip and camber, and what a new run has in any case."""
+    asked = pd.DataFrame({"alpha_deg": [0.0], "gamma_deg": [0.0], "Fz_N": [1400.0], "phi_t_per_m": [0.0]})
+    found = mffit.predict(project / "out", asked).iloc[0]
+    rig, C_gamma = result.config.rig, result.measured.C_gamma.value
+    force_of_camber = C_gamma * np.radians(rig.u("gamma_0_deg"))
+    zeros = math.hypot(rig.u("F0_N"), rig.u("alpha_0_deg"), force_of_camber)
+    assert 0.95 * zeros < found.u_Fy_setup_N < 1.05 * math.hypot(zeros, found.u_Fy_run_N)
+    assert found.u_Fy_setup_N > 2.0 * found.u_Fy_best_N
 
 
 def test_derivatives_by_the_zeros_of_a_set_up_are_exact_and_only_its_own(result):

@@ -26,7 +26,7 @@ GOOD = pd.DataFrame(
         "Fz_N": [900.0, 2000.0, 3000.0],
     }
 )
-ADDED = ["Fy_N", "u_Fy_N", "Fy_best_N", "u_Fy_best_N", "u_Fy_run_N"]
+ADDED = ["Fy_N", "u_Fy_N", "Fy_best_N", "u_Fy_best_N", "u_Fy_run_N", "u_Fy_setup_N"]
 
 
 def run(*arguments: object) -> int:
