@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import inspect
+import platform
 import re
 import shutil
 import subprocess
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 
 import tir
+from tir.codegen import c99
 from tir.codegen.javascript import javascript
 from tir.codegen.lag import LAG_INPUTS
 from tir.codegen.program import INPUTS, Switches
@@ -43,11 +45,11 @@ def record(names) -> type[ctypes.Structure]:
     return type("Record", (ctypes.Structure,), {"_fields_": [(name, ctypes.c_double) for name in names]})
 
 
-def compiled(code, name: str, folder: Path) -> ctypes.CDLL:
+def compiled(code, name: str, folder: Path, *flags: str) -> ctypes.CDLL:
     (folder / f"{name}.h").write_text(code.header, encoding="ascii")
     (folder / f"{name}.c").write_text(code.source, encoding="ascii")
     library = folder / f"{name}.so"
-    command = [str(COMPILER), *STRICT, "-shared", "-fPIC", f"{name}.c", "-o", str(library), "-lm"]
+    command = [str(COMPILER), *STRICT, *flags, "-shared", "-fPIC", f"{name}.c", "-o", str(library), "-lm"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return ctypes.CDLL(str(library))
@@ -87,20 +89,58 @@ def test_the_compiled_code_equals_the_equations(tmp_path, conditions, file, swit
         function.argtypes, function.restype = [ctypes.c_double] * len(INPUTS), record(names)
         found = [function(*row) for row in conditions]
         for name in names:
-            a = np.array([getattr(one, name) for one in found])
-            b = np.broadcast_to(getattr(values, name), a.shape)
-            sound = np.isfinite(b)
-            assert np.array_equal(a[~sound], b[~sound], equal_nan=True), name
-            scale = np.maximum(np.abs(b[sound]), 1e-3 * np.max(np.abs(b[sound])))
-            assert np.max(np.abs(a[sound] - b[sound]) / scale) < 1e-12, name
+            assert_near(np.array([getattr(one, name) for one in found]), getattr(values, name))
+
+
+def assert_near(a: np.ndarray, wanted) -> None:
+    b = np.broadcast_to(wanted, a.shape)
+    sound = np.isfinite(b)
+    assert np.array_equal(a[~sound], b[~sound], equal_nan=True)
+    scale = np.maximum(np.abs(b[sound]), 1e-3 * np.max(np.abs(b[sound])))
+    assert np.max(np.abs(a[sound] - b[sound]) / scale) < 1e-12
+
+
+GLIBC = platform.libc_ver()
+IN_VECTORS = (
+    shutil.which("gcc")
+    and platform.machine() == "x86_64"
+    and GLIBC[0] == "glibc"
+    and tuple(map(int, GLIBC[1].split("."))) >= (2, 35)
+)
+
+
+@needs_compiler
+@pytest.mark.parametrize("flags", [(), ("-O3", "-march=native")], ids=["as it is", "in vectors"])
+@pytest.mark.parametrize("switches", [Switches(), Switches(True, True, True)], ids=str)
+def test_many_conditions_equal_the_equations(tmp_path, conditions, switches, flags):
+    tyre = tir.read(VECTORS / "moto_front.tir")
+    library = compiled(tir.export_c(tyre, name="m", **switches._asdict()), "m", tmp_path, *flags)
+    inputs = np.array(conditions).T.copy()
+    found = np.full((len(Forces._fields), inputs.shape[1]), -1.0)
+    pointers = [x.ctypes.data_as(ctypes.c_void_p) for x in (*inputs, *found)]
+    library.m_evaluate_many(ctypes.c_size_t(inputs.shape[1]), *pointers)
+    with np.errstate(all="ignore"):
+        wanted = evaluate(tyre.p, **dict(zip(INPUTS, inputs, strict=True)), **switches._asdict())[0]
+    for a, b in zip(found, wanted, strict=True):
+        assert_near(a, b)
+
+
+@pytest.mark.skipif(not IN_VECTORS, reason="gcc on x86-64 with glibc 2.35 computes in vectors")
+def test_gcc_computes_many_conditions_in_vectors(tmp_path):
+    compiled(tir.export_c(tir.read(VECTORS / "moto_front.tir"), name="m", turn_slip=True), "m", tmp_path)
+    command = ["gcc", "-O3", "-march=native", "-fopt-info-loop-optimized", "-c", "m.c"]
+    said = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stderr
+    assert "loop vectorized" in said
 
 
 def test_the_code_allocates_nothing_and_keeps_nothing():
     code = tir.export_c(tir.read(VECTORS / "moto_front.tir"))
-    assert not re.search(r"malloc|static|float\b|for\s*\(|while|goto", code.source)
+    assert not re.search(r"malloc|static|float\b|while|goto", code.source)
+    assert len(re.findall(r"for\s*\(", code.source)) == 1, "that of many conditions"
     assert re.findall(r"#include\s+(\S+)", code.source) == ['"tyre.h"', "<math.h>"]
     assert (code.header + code.source).isascii()
-    assert set(re.findall(r"^\w.*\(", code.source, re.MULTILINE)) == {
+    assert set(re.findall(r"^\w.*\(", code.source.replace(c99.IN_VECTORS, ""), re.MULTILINE)) == {
+        "void tyre_evaluate_many(",
         "tyre_forces tyre_evaluate(",
         "tyre_state tyre_evaluate_state(",
     }

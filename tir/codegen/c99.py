@@ -45,6 +45,25 @@ C = SourceDialect(
 KINDS = {"forces": ("evaluate", Forces._fields), "state": ("evaluate_state", STATES)}
 """Functions of the operating condition and the fields of their records, by the name of the record."""
 
+IN_VECTORS = """\
+#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && !defined(__cplusplus)
+#if __GLIBC_PREREQ(2, 35)
+/* Its functions of vectors, in libmvec, and what gcc needs to use them; values of single conditions stay. */
+#define IN_VECTORS __attribute__((flatten))
+#define VECTOR __attribute__((__simd__("notinbranch"), __const__))
+__attribute__((__const__)) extern double sqrt(double);
+VECTOR extern double sin(double);
+VECTOR extern double cos(double);
+VECTOR extern double tan(double);
+VECTOR extern double atan(double);
+VECTOR extern double acos(double);
+VECTOR extern double exp(double);
+VECTOR extern double pow(double, double);
+#endif
+#endif
+"""
+"""With it gcc -O3 computes the loop of many conditions in vectors; any other compiler computes one after the other."""
+
 
 class Code(NamedTuple):
     """Text of a C module."""
@@ -81,7 +100,8 @@ def export_c(
     -------
     Code
         Header and source. ``<name>_evaluate(Fz, alpha, gamma, kappa, phi_t, Vx, p)`` returns the forces in ISO-W,
-        ``<name>_evaluate_state`` the stiffnesses, relaxation lengths and radii, as structures.
+        ``<name>_evaluate_state`` the stiffnesses, relaxation lengths and radii, as structures. ``<name>_evaluate_many`` fills
+        arrays of the forces from arrays of n inputs, which gcc -O3 computes in vectors.
 
     Raises
     ------
@@ -96,6 +116,7 @@ def export_c(
         text.record(kind, {field: OUTPUT_TEXTS[field] for field in fields})
     for kind, (function, fields) in KINDS.items():
         text.function(function, kind, made.program(fields, tuned=False), INPUTS)
+    _add_many(text)
     text.header.append("")
     if tunable or lag:
         _add_tuning(text, made)
@@ -143,6 +164,32 @@ class _Text(NamedTuple):
                 "",
             ]
         )
+
+
+def _add_many(text: _Text) -> None:
+    """The function that computes the forces of many conditions."""
+    inputs, forces = [*map(called, INPUTS)], [f"{force}_out" for force in Forces._fields]
+    arrays = [*(f"const double *{x}" for x in inputs), *(f"double *{x}" for x in forces)]
+    head = f"void {text.name}_evaluate_many(size_t n, {', '.join(arrays)})"
+    text.header.extend(["", "/* Of n conditions; no array of results may overlap another. */", f"{head};"])
+    text.source.extend(
+        [
+            "#ifdef IN_VECTORS",
+            "IN_VECTORS",
+            "#endif",
+            head,
+            "{",
+            "#ifdef IN_VECTORS",
+            "#pragma GCC ivdep",
+            "#endif",
+            "    for (size_t i = 0; i < n; i++) {",
+            f"        const {text.name}_forces out = {text.name}_evaluate({', '.join(f'{x}[i]' for x in inputs)});",
+            *(f"        {x}[i] = out.{field};" for x, field in zip(forces, Forces._fields, strict=True)),
+            "    }",
+            "}",
+            "",
+        ]
+    )
 
 
 def _add_tuning(text: _Text, made: ExportedTyre) -> None:
@@ -194,6 +241,7 @@ def _openings(name: str, made: ExportedTyre) -> tuple[list[str], list[str]]:
         "*/",
         f"#ifndef {guard}",
         f"#define {guard}",
+        "#include <stddef.h>",
         "#ifdef __cplusplus",
         'extern "C" {',
         "#endif",
@@ -204,5 +252,6 @@ def _openings(name: str, made: ExportedTyre) -> tuple[list[str], list[str]]:
         f'#include "{name}.h"',
         "#include <math.h>",
         "",
+        IN_VECTORS,
     ]
     return header, source
