@@ -22,7 +22,7 @@ from tir.consumers import rule_problems
 from tir.document import number_of, read_document, unquoted
 from tir.equations import lateral, normalise, stiffness
 from tir.outputs import outputs_of
-from tir.parameters import BY_NAME
+from tir.parameters import BY_NAME, TURN_SLIP
 from tir.targets import TARGETS
 from tir.writing import replace_file
 
@@ -124,6 +124,8 @@ def _status(old: OldFile, values: Mapping[str, Any], found: Mapping[str, float])
             out[name] = f"converted from {old.kind}: unchanged"
         elif name in old.present:
             out[name] = f"converted from {old.kind}: was {old.values[name]:.6g}"
+        elif BY_NAME[name].section == TURN_SLIP:
+            out[name] = f"default: {old.kind} has no turn slip"
         elif BY_NAME[name].section.endswith("_COEFFICIENTS"):
             out[name] = f"converted: {old.kind} has no such term"
     return out

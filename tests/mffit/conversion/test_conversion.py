@@ -609,3 +609,14 @@ def test_the_shift_by_camber_is_that_of_the_camber_stiffness_factor():
     alpha = np.linspace(-0.02, 0.02, 4001)
     Fy = mf52.forces(p, np.full(4001, 4000.0), alpha, np.full(4001, gamma)).Fy
     assert alpha[np.argmin(np.abs(Fy))] == pytest.approx(-(0.002 + 0.03 * gamma * 1.5 * 0.4), abs=1e-5)
+
+
+@pytest.mark.parametrize("kind", ["mf52", "pac2002"])
+def test_a_file_of_ours_reads_back_without_a_warning(tmp_path, kind):
+    """Neither its keys nor the turn slip that its formula lacks are a problem of the tyre."""
+    source = Path(__file__).parents[2] / "tir" / "vectors" / "moto_front.tir"
+    found = to_old(source, kind)
+    path = tmp_path / "own.tir"
+    path.write_text(found.text)
+    assert not read_old(path).problems
+    assert {p.name for p in convert(path).problems} <= {p.name for p in found.problems}
