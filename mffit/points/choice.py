@@ -8,7 +8,7 @@ import numpy as np
 
 from mffit.constants import FALSE_ALARM
 from mffit.points import constants
-from mffit.points.faulty import Fault
+from mffit.points.faulty import Fault, bridged
 from mffit.points.mean import mean_and_error
 from mffit.points.steady import Scale, SteadySettings, stretches
 from mffit.points.stretch import MOVE, PLATEAU, Stretch
@@ -28,6 +28,9 @@ def chosen(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[Stretc
 
     ``scale`` is the usual size of the settings in the whole campaign; if None, that of this series.
     """
+    sweep = bridged(
+        sweep, (*SteadySettings._fields[1:], "Fy", "Mz")
+    )  # to divide it; means take no such sample
     return _judged(sweep, _stretches(sweep, wrong, scale))
 
 

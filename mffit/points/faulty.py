@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -39,6 +39,7 @@ class FaultRule:
     reason: str  #: with {channel}
     channels: tuple[str, ...] = ("",)
     ends_stretch: bool = True
+    may_be_short: bool = False  #: whether short ones are only left out, because no rest can be hidden in them
     find: Callable[[Sweep, str], np.ndarray]  #: mask (n,)
 
 
@@ -52,13 +53,40 @@ def faults(sweep: Sweep) -> list[Fault]:
 
     Sensors that were not measured, or have one broadcast value, are not checked.
     """
-    found = [
-        Fault(rule.find(sweep, channel), rule.reason.format(channel=channel), rule.ends_stretch, rule.id)
-        for rule in FAULTS
-        for channel in rule.channels
-        if rule.channels is not SENSORS or _measured(getattr(sweep, channel))
-    ]
+    found: list[Fault] = []
+    for rule in FAULTS:
+        for channel in rule.channels:
+            if rule.channels is SENSORS and not _measured(getattr(sweep, channel)):
+                continue
+            which, reason = rule.find(sweep, channel), rule.reason.format(channel=channel)
+            short = short_gaps(sweep.time, which) & rule.may_be_short
+            found += [
+                Fault(which & ~short, reason, rule.ends_stretch, rule.id),
+                Fault(short, reason, False, rule.id),
+            ]
     return [fault for fault in found if np.any(fault.which)]
+
+
+def short_gaps(time: np.ndarray, missing: np.ndarray) -> np.ndarray:
+    """The samples of a mask (n,) in gaps between readings in which no rest of the rig can be hidden."""
+    short = np.zeros(len(time), dtype=bool)
+    for begin, end in runs(missing):
+        if begin > 0 and end < len(time):
+            short[begin:end] = time[end] - time[begin - 1] <= constants.SHORTEST_STRETCH
+    return short
+
+
+def bridged(sweep: Sweep, names: Collection[str]) -> Sweep:
+    """The recording with straight lines over the short gaps of some channels."""
+    filled = {}
+    for name in names:
+        values = getattr(sweep, name)
+        missing = _slip_missing(sweep) if name == "kappa" else ~np.isfinite(values)
+        short = short_gaps(sweep.time, missing)
+        if np.any(short):
+            seen = ~missing
+            filled[name] = np.where(short, np.interp(sweep.time, sweep.time[seen], values[seen]), values)
+    return replace(sweep, **filled) if filled else sweep
 
 
 def _slip_missing(sweep: Sweep) -> np.ndarray:
@@ -152,7 +180,8 @@ FAULTS = (
         id="no-reading",
         looks_at="Samples without a number",
         reason="no reading of {channel}",
-        channels=("alpha", "gamma", "Fz", "Fy"),
+        channels=("alpha", "gamma", "Fz", "Fy", "p", "V"),
+        may_be_short=True,
         find=lambda sweep, channel: ~np.isfinite(getattr(sweep, channel)),
     ),
     FaultRule(
@@ -160,6 +189,7 @@ FAULTS = (
         looks_at="Samples without a number, of a slip that was measured elsewhere in the recording",
         reason="no reading of {channel}",
         channels=("kappa",),
+        may_be_short=True,
         find=lambda sweep, _: _slip_missing(sweep),
     ),
     FaultRule(

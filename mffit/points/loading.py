@@ -19,9 +19,9 @@ from mffit.points import levels
 from mffit.points.averaging import rows_as_points
 from mffit.points.choice import settings_of
 from mffit.points.clock import evenly_timed, with_common_clock
-from mffit.points.faulty import DRIVEN
+from mffit.points.faulty import DRIVEN, bridged
 from mffit.points.left_out import LeftOut, at_standstill, by_hand
-from mffit.points.lost import lost_sweeps
+from mffit.points.lost import little_used, lost_sweeps
 from mffit.points.other_label import other_labels
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
@@ -73,7 +73,8 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
         found = files.load(config)
     phi_t = {entry.file: path_curvature(config.rig, entry) for entry in config.sweep}
     timed = [evenly_timed(sweep) for sweep in found.sweeps]
-    clocked = with_common_clock([sweep for sweep, _ in timed])
+    held = [bridged(sweep, ("p", "V", "T")) for sweep, _ in timed]  # often logged at a lower rate
+    clocked = with_common_clock(held)
     sweeps, of_slip = against_free_rolling(clocked, config, with_errors=continuous)
     series = [settings_of(sweep) for sweep in sweeps if sweep.is_series]
     scale = scale_of(series) if series else None
@@ -84,6 +85,7 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     reasons = tuple(one.sentence for one in lost if one.whole)
     doubts = (
         *(one.sentence for one in lost if not one.whole),
+        *(() if lost else little_used(stretches)),
         *_compared(points.select(~points.continuous) if config.rig.on_disc else points),
     )
     warnings = [

@@ -9,10 +9,11 @@ import numpy as np
 import scipy  # its parts are loaded on first use
 
 from mffit.points import constants
+from mffit.points.faulty import DRIVEN
 from mffit.points.points import Points, of_si
 from mffit.points.remarks import COLUMN_OF
 from mffit.points.steady import LEVEL, STEP, samples_in
-from mffit.points.stretch import StretchNote
+from mffit.points.stretch import SWEEP, StretchNote
 from mffit.quantities import CONDITIONS
 from mffit.sweeps import Sweep
 
@@ -70,6 +71,24 @@ def lost_sweeps(
             )
             found.append(LostSweep(said, whole))
     return tuple(found)
+
+
+def little_used(notes: Sequence[StretchNote]) -> tuple[str, ...]:
+    """A doubt if the points hold less than half of the time in which sweeps were recorded; nothing without sweeps."""
+    swept = {note.file for note in notes if note.kind == SWEEP}
+    judged = [note for note in notes if note.file in swept and note.dropped not in NO_SWEEP]
+    seconds = sum(note.end_s - note.begin_s for note in judged)
+    used = sum(note.end_s - note.begin_s for note in judged if note.points)
+    if not judged or used > constants.SWEPT_SHARE * seconds:
+        return ()
+    return (
+        f"the points hold {used:.0f} s of {seconds:.0f} s of recorded sweeps{_reason(judged)}; `mffit sniff` lists the stretches "
+        "with the reason for each",
+    )
+
+
+NO_SWEEP = ("no load on the tyre", DRIVEN, "load, pressure or speed changes")
+"""Reasons for leaving out samples that lie between sweeps."""
 
 
 def _reason(notes: Sequence[StretchNote]) -> str:

@@ -43,7 +43,8 @@ def note(sweep: Sweep, stretch: Stretch, label: str, points: int) -> StretchNote
     """The row about a stretch."""
     part = slice(stretch.begin, stretch.end)
     last = stretch.end - 1
-    low, high = (float(np.degrees(f(sweep.alpha[part]))) for f in (np.nanmin, np.nanmax))
+    seen = np.degrees(sweep.alpha[part][np.isfinite(sweep.alpha[part])])
+    low, high = (float(seen.min()), float(seen.max())) if len(seen) else (np.nan, np.nan)
     has_slip = "kappa" in sweep.table
     return StretchNote(
         file=sweep.file,

@@ -71,6 +71,15 @@ def test_a_missing_reading_is_a_fault_of_its_sample(channel):
     (fault,) = (f for f in faults(spoiled(channel, [7], np.nan)) if "no reading" in f.reason)
     assert fault.reason == f"no reading of {channel}"
     assert list(np.flatnonzero(fault.which)) == [7]
+    assert not fault.ends_stretch
+
+
+def test_readings_missing_for_so_long_that_a_rest_may_be_hidden_end_the_stretch():
+    whole = recording()
+    rate = 1.0 / np.median(np.diff(whole.time))
+    (fault,) = (
+        f for f in faults(spoiled("Fy", slice(7, 8 + round(2.0 * rate)), np.nan)) if "no reading" in f.reason
+    )
     assert fault.ends_stretch
 
 

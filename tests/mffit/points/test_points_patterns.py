@@ -247,6 +247,38 @@ def test_a_build_without_the_sweeps_of_its_recording_is_not_sound(tmp_path):
     assert verdict.judged(result) != "sound"
 
 
+UP_AND_DOWN = at_rate([(0.0, -8.0), (8.0, 8.0), (16.0, -8.0)], 50.0)
+
+
+@pytest.mark.parametrize("column", ["alpha_deg", "gamma_deg", "Fz_N", "Fy_N", "kappa", "p_kPa", "V_mps"])
+def test_a_gap_in_which_no_rest_hides_cuts_no_sweep_and_adds_no_reading(read, column):
+    """A cell is empty every second, and once all cells for 1.5 s."""
+    table = recording(50.0, alpha_deg=UP_AND_DOWN)
+    gaps = (np.arange(len(table)) % 50 == 7) | (
+        (np.arange(len(table)) >= 300) & (np.arange(len(table)) < 375)
+    )
+    found = read(table.assign(**{column: table[column].mask(gaps)}))
+    (sweep,) = of_kind(found, SWEEP)
+    assert sweep.end_s - sweep.begin_s > 15.0
+    interpolated = column in ("p_kPa", "V_mps")  # what is held may be logged more slowly
+    assert np.any((found.points.time > 6.05) & (found.points.time < 7.35)) == interpolated
+    np.testing.assert_allclose(found.points.Fy, -LOAD * sine(found.points.alpha), atol=30.0)
+    assert not found.doubts
+
+
+def test_a_longer_gap_cuts_the_sweep(read):
+    table = recording(50.0, alpha_deg=UP_AND_DOWN)
+    gap = (np.arange(len(table)) >= 250) & (np.arange(len(table)) < 375)
+    assert len(of_kind(read(table.assign(Fy_N=table["Fy_N"].mask(gap))), SWEEP)) == 2
+
+
+def test_sweeps_of_which_most_is_left_out_are_in_doubt(read):
+    """The force is missing for 2.6 s of every 4.8, and 2 s of rest of a sweep begin with its first metres."""
+    table = recording(50.0, alpha_deg=np.tile(UP_AND_DOWN, 4))
+    (doubt,) = read(table.assign(Fy_N=table["Fy_N"].mask(np.arange(len(table)) % 240 < 130))).doubts
+    assert "26 s of 63 s of recorded sweeps (mostly because: no reading of Fy)" in doubt
+
+
 def drifting(table: pd.DataFrame, column: str, by: float) -> pd.DataFrame:
     return table.assign(**{column: table[column] + by * np.linspace(0.0, 1.0, len(table))})
 
