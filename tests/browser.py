@@ -6,6 +6,7 @@ import base64
 import io
 import re
 import shutil
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -81,13 +82,54 @@ def look(
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
 
 
-def sheets(browser: Any) -> int:
-    """Number of sheets of A4 that the page takes when it is printed."""
+def printed(browser: Any) -> bytes:
+    """The page as a PDF on sheets of A4."""
     cut = {"paperWidth": 8.27, "paperHeight": 11.69, "preferCSSPageSize": True}
     browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [], "media": ""})
-    document = base64.b64decode(browser.execute_cdp_cmd("Page.printToPDF", cut)["data"])
-    return len(re.findall(rb"/Type\s*/Page\b", document))
+    return base64.b64decode(browser.execute_cdp_cmd("Page.printToPDF", cut)["data"])
+
+
+def sheets(browser: Any) -> int:
+    """Number of sheets of A4 that the page takes when it is printed."""
+    return len(re.findall(rb"/Type\s*/Page\b", printed(browser)))
+
+
+def words_of(document: bytes) -> str:
+    """The text of a PDF that Chromium wrote, without its spaces: glyphs by the table of Unicode of each font."""
+    objects = {
+        int(number): (head, zlib.decompress(content) if b"/FlateDecode" in head else content)
+        for number, head, content in re.findall(
+            rb"(\d+) 0 obj\s*(.*?)(?:\s*stream\r?\n(.*?)\r?\nendstream)?\s*endobj", document, re.DOTALL
+        )
+    }
+    tables = {
+        font: _unicode(objects[int(found[1])][1])
+        for head, _ in objects.values()
+        for font, number in re.findall(rb"/(F\d+) (\d+) 0 R", head)
+        if (found := re.search(rb"/ToUnicode (\d+) 0 R", objects[int(number)][0]))
+    }
+    said, table = [], {}
+    for _, content in objects.values():
+        for font, glyphs in re.findall(
+            rb"/(F\d+) [\d.]+ Tf|<([0-9A-Fa-f]+)>", content if b" Tf" in content else b""
+        ):
+            table = tables[font] if font else table
+            said += [table.get(int(glyphs[k : k + 4], 16), "") for k in range(0, len(glyphs), 4)]
+    return "".join(said).replace(" ", "")
+
+
+def _unicode(table: bytes) -> dict[int, str]:
+    """Text by glyph, of a CMap."""
+    found: dict[int, str] = {}
+    for block in re.findall(rb"beginbfrange(.*?)endbfrange", table, re.DOTALL):
+        for first, last, text in re.findall(rb"<(\w+)>\s*<(\w+)>\s*<(\w+)>", block):
+            begin = int(first, 16)
+            found |= {k: chr(int(text, 16) + k - begin) for k in range(begin, int(last, 16) + 1)}
+    for block in re.findall(rb"beginbfchar(.*?)endbfchar", table, re.DOTALL):
+        for glyph, text in re.findall(rb"<(\w+)>\s*<(\w+)>", block):
+            found[int(glyph, 16)] = bytes.fromhex(text.decode()).decode("utf-16-be")
+    return found
 
 
 def console_errors(browser: Any) -> list[str]:

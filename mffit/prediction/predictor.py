@@ -213,6 +213,20 @@ class Predictor:
         middle = np.mean([*_settings(points, own.smooth.inputs)], axis=0)
         return own.u_between(middle, slopes)
 
+    def least_known(self, fitted: Tyre, channel: str) -> str:
+        """The coefficient that adds most to the uncertainty of a channel of the upright wheel at nominal load and no slip."""
+        points = self.points(
+            fitted, pd.DataFrame({"alpha_deg": [0.0], "gamma_deg": 0.0, "Fz_N": fitted["FNOMIN"]})
+        )
+        of_tyre = np.flatnonzero(self._of_tyre)
+        names = [self.names[k] for k in of_tyre]
+        slopes = Simulation.of(fitted, turn_slip=self.curved).sensitivities(points, names, [channel])[1][
+            channel
+        ]
+        own = self.channels[channel]
+        u = np.linalg.norm(own.root[len(own.missed) :][of_tyre], axis=1)
+        return names[int(np.argmax(np.abs(slopes[0]) * u))]
+
     @property
     def _of_tyre(self) -> np.ndarray:
         """Mask (k,) of the numbers that are the tyre's."""

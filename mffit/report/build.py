@@ -9,18 +9,20 @@ from pathlib import Path
 
 from mffit.diagnosis import wording as of_residuals
 from mffit.measured import wording
+from mffit.prediction import road_sentences
 from mffit.report import page
-from mffit.report.build_view import BuildView, CoefficientRow, view_of
+from mffit.report.build_view import BuildView, CoefficientRow, sweep_rows, view_of
 from mffit.report.drawing.records import Sheet
-from mffit.report.figures import bands, decomposition, fit, missed, radii, residuals, slip, spin
+from mffit.report.figures import bands, decomposition, fit, missed, radii, residuals, road, slip, spin
 from mffit.report.text.direct import PER_LOAD
-from mffit.report.verdict import headlines, purposes, verdict
+from mffit.report.verdict import headlines, judgement, purposes, verdict
 from mffit.results import BuildResult
 
 OTHERS = "EVERYTHING_ELSE"
 """The section of dimensions, ranges and nominal conditions."""
 
 BUILD: Mapping[str, Callable[[BuildView], Sheet]] = {
+    "road": road.road,
     "overview": fit.overview,
     "files": bands.files_on_a_straight_path,
     "camber_reduction": spin.camber_reduction,
@@ -45,6 +47,9 @@ def write_build(result: BuildResult, folder: Path) -> None:
         BUILD,
         view,
         verdict=verdict(result),
+        judgement=judgement(result),
+        on_road=road_sentences(result.road, view.normal_file) if result.road is not None else [],
+        sweeps=sweep_rows(view.points),
         headlines=headlines(result),
         purposes=purposes(result),
         sections=groupby(sorted(view.rows, key=lambda row: _section(row) == OTHERS), key=_section),

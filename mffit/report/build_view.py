@@ -10,9 +10,10 @@ import numpy as np
 
 from mffit.fit import Coefficient
 from mffit.points import Points
-from mffit.quantities import CHANNELS, QuantityName
+from mffit.quantities import CHANNELS, CONDITIONS, QuantityName
 from mffit.report.curves import Curve, CurveCondition, CurveLine, conditions, curves, model_lines
 from mffit.results import BuildResult
+from mffit.rounding import UNKNOWN, number
 from mffit.scatter import finite_median
 from tir.frozen import ReadOnlyArrays
 from tir.parameters import BY_NAME, Parameter
@@ -43,6 +44,37 @@ def channel_rows(points: Points, names: Iterable[str]) -> tuple[ChannelRow, ...]
     """Those of the channels that have a reading."""
     rows = (ChannelRow(name, points.channel(name), points.u(name)) for name in names)
     return tuple(row for row in rows if np.isfinite(row.measured).any())
+
+
+class SweepRow(NamedTuple):
+    """A sweep and the ranges of its conditions, as texts in the unit of each."""
+
+    name: str
+    points: int
+    channels: tuple[str, ...]  #: that were measured
+    ranges: Mapping[str, str]  #: by column of :data:`mffit.quantities.CONDITIONS`
+
+
+def sweep_rows(points: Points) -> tuple[SweepRow, ...]:
+    """The sweeps of the points, conditions as the rig reads them."""
+    known = {key: points.table[key].to_numpy(dtype=float) for key in CONDITIONS if key in points.table}
+    found = []
+    for i, name in enumerate(points.sweep_names):
+        rows = points.sweep == i
+        read = [key for key in points.measured if np.isfinite(points.channel(key)[rows]).any()]
+        ranges = {key: _range(values[rows]) for key, values in known.items()}
+        found.append(SweepRow(name, int(rows.sum()), tuple(read), ranges))
+    return tuple(found)
+
+
+def _range(values: np.ndarray) -> str:
+    """Least and largest value, or one if they are written alike."""
+    ends = (
+        [number(end, digits=3) for end in (np.nanmin(values), np.nanmax(values))]
+        if np.isfinite(values).any()
+        else [UNKNOWN]
+    )
+    return " to ".join(dict.fromkeys(ends))
 
 
 class CoefficientRow(NamedTuple):
@@ -98,6 +130,11 @@ class BuildView(Overlay):
         single = [o.row for o in self.build.fit.outliers if o.channel == channel]
         doubtful = [row for doubt in self.build.fit.doubts for row in doubt.index]
         return np.array(single, dtype=int), np.array(doubtful, dtype=int)
+
+    @property
+    def normal_file(self) -> str:
+        """Name of the file for turn slip off; empty without one."""
+        return self.file_names.get("normal", self.file_names.get("both", ""))
 
     @property
     def beside_curves(self) -> int:

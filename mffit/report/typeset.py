@@ -19,7 +19,7 @@ TABLE = re.compile(r"<table\b.*?</table>", re.DOTALL)
 HEADING = re.compile(r"<th\b[^>]*>(.*?)</th>", re.DOTALL)
 ROW = re.compile(r"<tr\b.*?</tr>", re.DOTALL)
 CELL = re.compile(r'<td\b(?:[^>]*?colspan="(\d+)")?')
-FEW_COLUMNS = 3
+FEW_COLUMNS = 2
 """So many fit a telephone."""
 
 SYMBOLS = {

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 from mffit.comparison.characteristics import DECIDED_BY, Tested, characteristics
 from mffit.measured.wording import SOURCES
-from mffit.quantities import CHANNELS, CHARACTERISTICS, DIRECT, KEYS, QuantityName
+from mffit.prediction import OnRoad
+from mffit.quantities import CHANNELS, CHARACTERISTICS, DIRECT, KEYS, ON_ROAD, QuantityName
 from mffit.results import BuildResult
 from mffit.rounding import AtLeast, number, stated, times
 from mffit.tested import NO_FX, lacks_fx
@@ -34,9 +35,14 @@ class Headline(NamedTuple):
     reached: str = ""  #: where a largest force that is no peak was reached
 
 
+def judgement(result: BuildResult) -> str:
+    """The judgement as a key of :data:`JUDGED`."""
+    return "distrusted" if result.reasons else "doubted" if result.trust.doubts else "sound"
+
+
 def judged(result: BuildResult) -> str:
-    """The judgement in a word."""
-    return JUDGED["distrusted" if result.reasons else "doubted" if result.trust.doubts else "sound"]
+    """The judgement in words."""
+    return JUDGED[judgement(result)]
 
 
 def verdict(result: BuildResult) -> str:
@@ -75,6 +81,7 @@ def headlines(result: BuildResult) -> list[Headline]:
     if nominal is not None and not result.on_disc:  # the same numbers as in result.json
         of_model |= {KEYS[name]: q for name, q in nominal.of_model.items()}
         loads |= {KEYS[name]: nominal.load for name in nominal.of_model}
+    of_model |= _of_road(result.road)
     tested = Tested.of([tyre])
     for key in filter(tested.varied, DECIDED_BY):
         value, note = of_model[key], f"of the model at {number(loads[key], 0)} N, straight path"
@@ -84,6 +91,20 @@ def headlines(result: BuildResult) -> list[Headline]:
             known = DIRECT["C_alpha_straight"] if straight else CHARACTERISTICS[key]
             found.append(_headline(known, value, note, end))
     return found[:FOUR]
+
+
+def _of_road(road: OnRoad | None) -> dict[str, Quantity]:
+    """Characteristics of the tyre on the road, the lesser of both sides."""
+    if road is None:
+        return {}
+    found = {}
+    for key, known in CHARACTERISTICS.items():
+        sides = [
+            getattr(side, name) for name in ON_ROAD if DIRECT[name] is known for side in road.sides.values()
+        ]
+        if sides and None not in sides:
+            found[key] = min(sides, key=lambda one: one.value)
+    return found
 
 
 def _headline(known: QuantityName, value: Quantity, note: str, reached: str = "") -> Headline:

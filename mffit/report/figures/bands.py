@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,11 +11,12 @@ from mffit.constants import COVERAGE_FACTOR_95, STEPS_OF_LINE
 from mffit.fit.written.files import Files
 from mffit.points import Points, make_points
 from mffit.quantities import CHANNELS, SIDEWAYS
-from mffit.report import constants, labels, style
+from mffit.report import constants, labels, style, words
 from mffit.report.build_view import BuildView
 from mffit.report.curves import shown_values
 from mffit.report.drawing.records import NOTHING, Guide, Look, Panel, Sheet, Trace, both_sides
 from mffit.rig import Simulation
+from mffit.rounding import number
 
 LIMITS = {"gamma": "CAMMAX", "alpha": "ALPMAX"}
 """The file's key for the end of an angle's range."""
@@ -40,7 +41,36 @@ def bands(view: BuildView) -> Sheet:
         driven = [name for name in ("Fx", "Mz") if name in view.points.measured]
         rows.append([_panel(view, "kappa", name, colours) for name in driven])
     key = {labels.LOAD.of(load): Look(colour=colour, line="-") for load, colour in colours.items()}
-    return Sheet(rows=rows, height=2.1, key=key)
+    remark = " ".join(filter(None, (_why_wide(view, name, rows) for name in sideways)))
+    return Sheet(rows=rows, height=2.1, key=key, remark=remark)
+
+
+def _why_wide(view: BuildView, channel: str, rows: Sequence[Sequence[Panel]]) -> str:
+    """Why the band of a channel at nominal load is wider than the misfit even where it is narrowest; empty if it is not."""
+    build = view.build
+    known, agreement = build.prediction, build.fit.channels.get(channel)
+    if known is None or agreement is None or channel not in known.channels:
+        return ""
+    name, unit = CHANNELS[channel].short_axis, CHANNELS[channel].unit
+    nominal = labels.LOAD.of(float(build.fit.tyre["FNOMIN"]))
+    drawn = [
+        s
+        for row in rows
+        for panel in row
+        if panel.title == name
+        for s in panel.series
+        if isinstance(s, Trace)
+    ]
+    least = min(float(np.min(s.half)) for s in drawn if s.name == nominal and s.half is not None)
+    if not least > COVERAGE_FACTOR_95 * agreement.rmse:
+        return ""
+    cause = known.least_known(build.fit.tyre, channel)
+    partner = build.fit.coefficients[cause].correlated_with
+    with_it = f", which goes with {words.of_number(partner)}" if partner else ""
+    return (
+        f"The band of {channel} is ±{number(least, digits=2)} {unit} or more at nominal load, beside a misfit of "
+        f"{number(agreement.rmse, digits=2)} {unit}, because the readings leave {cause} uncertain{with_it}."
+    )
 
 
 def _panel(view: BuildView, over: str, name: str, colours: Mapping[float, str]) -> Panel:
@@ -80,7 +110,8 @@ def _model(view: BuildView, channel: str, where: Points) -> tuple[np.ndarray, np
     line = tyre.readings(where, (channel,))[channel]
     known = view.build.prediction
     if known is not None and channel in known.channels:
-        return line, known.band(tyre, tyre, where, (channel,))[channel]
+        found = known.forces(tyre, tyre, where, (channel,))[channel]
+        return line, COVERAGE_FACTOR_95 * np.sqrt((found.best - found.file) ** 2 + found.variance)
     posterior = view.build.fit.posterior  # not measured: nothing but its coefficients is known
     names = [name for name in posterior.names if name in tyre.values]
     slopes = tyre.sensitivities(where, names, (channel,))[1][channel]

@@ -30,9 +30,7 @@ def model_against_points(view: Overlay, channel: ChannelRow) -> Sheet:
         if np.isfinite(channel.measured[curve.index]).any():
             conditions.setdefault((curve.over, curve.load, curve.pressure, curve.camber), []).append(curve)
     drawn = [curve for members in conditions.values() for curve in members]
-    colours = {
-        name: style.ramp({c.held for c in drawn if labels.OTHER[c.over] == name}) for name in labels.ANGLES
-    }
+    colours = _ramps(drawn)
     cambers = {over: len({key[3] for key in conditions if key[0] == over}) > 1 for over in labels.OTHER}
     groups = [
         [
@@ -47,9 +45,7 @@ def model_against_points(view: Overlay, channel: ChannelRow) -> Sheet:
         key["backward"] = replace(BACKWARD, line="--", width=1.0)
     marked = zip(view.marked(channel.name), MARKS.items(), strict=True)
     key |= {name: mark for rows, (name, mark) in marked if len(rows)}
-    for held, ramp in colours.items():
-        if len(ramp) > 1:
-            key |= held_key(held, ramp)
+    key |= _keys(colours)
     remark = "Hollow triangles and dashed lines are runs backwards." if "backward" in key else ""
     return Sheet(rows=in_rows(*groups), height=1.6, key=key, remark=remark)
 
@@ -102,14 +98,33 @@ def overview(view: BuildView) -> Sheet:
         over: view.nearest((c for c in forward if c.over == over), "load", "pressure")
         for over in labels.OTHER
     }
-    panels = []
+    found = []
     for channel in view.channels:
         first = ("kappa", "alpha", "gamma") if channel.name == "Fx" else ("alpha", "gamma", "kappa")
-        panels += [_glance(view, channel, chosen[over]) for over in first if chosen[over]][:1]
-    if len(panels) < len(chosen) and chosen["gamma"] and chosen["alpha"]:
-        panels += [_glance(view, channel, chosen["gamma"]) for channel in view.channels[:1]]
-    return Sheet(rows=in_rows(panels, columns=4), height=2.2, key={"measured": READINGS, "model": MODEL})
+        found += [(channel, chosen[over]) for over in first if chosen[over]][:1]
+    if len(found) < len(chosen) and chosen["gamma"] and chosen["alpha"]:
+        found += [(channel, chosen["gamma"]) for channel in view.channels[:1]]
+    ramps = _ramps([curve for _, members in found for curve in members])
+    panels = [_panel(view, channel, members, ramps[_held(members[0])], False) for channel, members in found]
+    key = {"measured": READINGS, "model": MODEL, **_keys(ramps)}
+    return Sheet(rows=in_rows(panels, columns=4), height=2.2, key=key)
 
 
-def _glance(view: BuildView, channel: ChannelRow, members: list[Curve]) -> Panel:
-    return _panel(view, channel, members, style.ramp({curve.held for curve in members}), False)
+def _held(curve: Curve) -> str:
+    """The angle that a curve holds."""
+    return labels.OTHER[curve.over]
+
+
+def _ramps(drawn: Sequence[Curve]) -> dict[str, dict[float, str]]:
+    """By angle that is held, the colour of each of its values."""
+    return {name: style.ramp({c.held for c in drawn if _held(c) == name}) for name in labels.ANGLES}
+
+
+def _keys(ramps: Mapping[str, Mapping[float, str]]) -> dict[str, Look]:
+    """What the colours of angles mean, if they differ."""
+    return {
+        name: look
+        for held, ramp in ramps.items()
+        if len(ramp) > 1
+        for name, look in held_key(held, ramp).items()
+    }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from conftest import DISC, brush, build, disc_of_a_brush
 import tir
 from mffit.fit.coverage import UNSEEN
 from mffit.measured import camber_of_no_spin
+from mffit.rig_errors import error_of
 from mffit.rounding import AtLeast
 from mffit.scatter import rms
 
@@ -157,3 +159,15 @@ def test_after_a_flat_belt_the_road_was_measured(foreign):
     assert road.missed == {}
     true, _ = brush(road.upright.sideslip, 0.0, road.load)
     assert np.mean(np.abs(road.upright.best["Fy"] - true) < 1.96 * road.upright.u["Fy"]) > 0.9
+
+
+def test_the_least_known_coefficient_is_the_one_that_adds_most(built):
+    """The same coefficient with a thousand times its uncertainty, if the force depends on it there."""
+    known, tyre = built.result.prediction, built.result.fit.tyre
+    own = known.channels["Fy"]
+    assert error_of(known.least_known(tyre, "Fy")) is None
+    for name in ("PKY1", "PKY6"):  # the path turns, so that stiffness moves the force of the upright wheel
+        root = own.root.copy()
+        root[len(own.missed) + known.names.index(name)] *= 1e3
+        moved = replace(known, channels={"Fy": replace(own, root=root)})
+        assert moved.least_known(tyre, "Fy") == name

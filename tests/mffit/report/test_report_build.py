@@ -5,19 +5,36 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+import unicodedata
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from report_toys import made_coefficients, made_result, read_page
 
-from mffit.report import write_build
+from mffit import rounding
+from mffit.prediction import OnRoad
+from mffit.prediction.road import RoadCurve, RoadSide
+from mffit.report import typeset, write_build
 from mffit.report.style import ramp
 from mffit.report.text import build_summary
 from mffit.report.verdict import headlines
-from mffit.rounding import ascii_only
+from mffit.rounding import AtLeast, ascii_only
 from mffit.tested import words_on_tested
-from tests.browser import PAPER, PHONE, SCREEN, brightness, complaints, console_errors, look, opened, sheets
+from tests.browser import (
+    PAPER,
+    PHONE,
+    SCREEN,
+    brightness,
+    complaints,
+    console_errors,
+    look,
+    opened,
+    printed,
+    sheets,
+    words_of,
+)
+from tir import Quantity
 
 PNG = b"\x89PNG\r\n"
 
@@ -76,18 +93,18 @@ def test_every_picture_is_described_in_words(page):
     assert all(len(said) > 20 for said in page.drawings)
 
 
-def test_the_page_begins_with_the_verdict_the_numbers_and_two_pictures_then_the_files(written, page):
+def test_the_page_begins_with_the_contents_the_verdict_and_the_numbers_then_the_files(written, page):
     html = (written / "report.html").read_text(encoding="utf-8")
     order = [
-        'class="headline"',
+        '<nav class="toc"',
+        'class="headline sound"',
         "1 warning</a>",
         'class="card main"',
-        "<figure",
         "Which file goes where",
         "<details",
+        "<figure",
     ]
     assert [html.index(mark) for mark in order] == sorted(html.index(mark) for mark in order)
-    assert html[: html.index("Which file goes where")].count("<figure") == 2
     assert html.count('<div class="name">') == 4
     assert "is sound: 115 points are fitted to" in page.text
     assert "short & noisy" in page.text
@@ -158,6 +175,54 @@ def test_a_number_that_was_not_reached_or_not_varied_is_not_stated_as_measured(t
     assert f"{ascii_only(found['mu_y'].value)} at 5.0 deg, the end of the tested range" in build_summary(
         result
     )
+
+
+def test_the_road_comes_first_and_its_lesser_side_is_a_headline(result, tmp_path):
+    """Numbers of both sides, what the file for turn slip off misses, and what would make the road better known."""
+    sideslip = np.radians(np.linspace(-8.0, 8.0, 5))
+    best, u = {"Fy": -2e4 * sideslip}, {"Fy": np.full(5, 20.0)}
+    leaned = RoadCurve(np.radians(25.0), sideslip, best, u, {"Fy": np.full(5, 40.0)})
+    sides = {
+        side: RoadSide(Quantity(sign * 1210.0, 12.0, "N"), None, AtLeast(grip, 0.011, ""), None)
+        for side, sign, grip in (("negative", 1.0, 1.178), ("positive", -1.0, 1.143))
+    }
+    upright = replace(leaned, camber=0.0, off={"Fy": np.zeros(5)})
+    road = OnRoad(1500.0, 250e3, np.radians(4.0), sides, upright, leaned, ("a sweep the other way",))
+    made = replace(result, road=road)
+    (grip,) = [one for one in headlines(made) if one.name.endswith("mu_y")]
+    assert ascii_only(grip.value) == "at least 1.143 +- 0.011"
+    write_build(made, tmp_path)
+    html, text = (
+        (tmp_path / "report.html").read_text(encoding="utf-8"),
+        read_page(tmp_path / "report.html").text,
+    )
+    marks = ['class="cards"', 'id="road"', "<figure", "Which file goes where", "<h3"]
+    assert [html.index(mark) for mark in marks] == sorted(html.index(mark) for mark in marks)
+    for number in (
+        "1210 ± 12 N",
+        "−1210 ± 12 N",
+        "at least 1.178 ± 0.011",
+        "better known by a sweep the other way",
+    ):
+        assert number in text
+    assert (tmp_path / "plots/road.png").is_file()
+
+
+def test_a_channel_that_was_not_fitted_is_no_row_of_the_misfits(result, tmp_path):
+    """Longitudinal force that was read, but of the freely rolling wheel only."""
+    fit = result.fit
+    none = {"Fx": replace(fit.channels["Fy"], n=0)}
+    points = result.points.replace(Fx=np.full(len(result.points), 3.0))
+    made = replace(
+        result,
+        points=points,
+        fit=replace(fit, channels={**fit.channels, **none}, model={**fit.model, "Fx": np.zeros(len(points))}),
+    )
+    write_build(made, tmp_path)
+    html = (tmp_path / "report.html").read_text(encoding="utf-8")
+    table = html[html.index('id="fit"') :]
+    rows = re.findall(r"<tr><td[^>]*>(.*?), ", table[: table.index("</table>")])
+    assert [re.sub("<[^>]*>", "", row) for row in rows] == ["Fy", "Mz"]
 
 
 def test_same_result_gives_the_same_bytes(result, written, tmp_path):
@@ -243,6 +308,31 @@ def test_folds_show_when_opened_and_on_paper_what_is_decided_by(browser):
     assert shown(".paper-only")
     assert sheets(browser) <= 5
     look(browser)
+
+
+def test_everything_is_printed_if_asked_for(browser, result):
+    """Coefficients with origin and uncertainty, budgets, sweeps, digests of the inputs, and a place to sign."""
+    few = words_of(printed(browser))
+    browser.find_element("id", "everything").click()
+    try:
+        every = words_of(printed(browser))
+    finally:
+        look(browser)
+        browser.find_element("id", "everything").click()
+    assert "Signature" in few
+    assert "onscreenonly" in few
+    assert "onscreenonly" not in every
+    assert all(name in every for name in result.fit.coefficients)
+    fitted = [name for name, found in result.fit.coefficients.items() if found.stderr and not found.by_hand]
+    value = rounding.with_u(
+        result.fit.coefficients[fitted[0]].value, result.fit.coefficients[fitted[0]].stderr
+    )
+    assert fitted[0] + value.replace(" ", "") in every
+    sources = [re.sub("<[^>]*>| ", "", typeset.sentence(line.source)) for line in result.measured.budget]
+    assert sources
+    whole = unicodedata.normalize("NFKD", every)  # letters that the font joins
+    assert [source for source in sources if unicodedata.normalize("NFKD", source) not in whole] == []
+    assert all(name in every for name in result.points.sweep_names)
 
 
 def test_page_and_pictures_are_dark_in_dark_mode(browser):

@@ -344,3 +344,16 @@ def test_the_overview_has_the_curves_nearest_to_the_nominal_conditions(view):
         assert read
         shown = set(np.round(np.concatenate(read), 6))
         assert any(shown <= set(np.round(view.points.channel(c.name)[at_nominal], 6)) for c in view.channels)
+
+
+def test_the_overview_says_which_angle_each_of_its_colours_is(view):
+    sheet = fit.overview(view)
+    told = {look.colour for name, look in sheet.key.items() if "°" in name}
+    lines = {
+        one.look.colour
+        for panel in sheet.panels
+        for one in panel.series
+        if len({other.look.colour for other in panel.series}) > 1
+    }
+    assert len(lines) > 1
+    assert lines <= told
