@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import json
 import os
 import shutil
 import subprocess
@@ -46,15 +47,38 @@ ON_DEMAND = sorted(
 def loaded(program: str, folder: Path = ROOT) -> set[str]:
     """Names of all modules in a fresh process that has run ``program``."""
     count = "import sys; print('\\n' + '\\n'.join(sys.modules))"
+    return set(in_a_process(f"{program}\n{count}", folder).split())
+
+
+def in_a_process(program: str, folder: Path = ROOT) -> str:
+    """What a fresh process prints that runs ``program``."""
     done = subprocess.run(
-        [sys.executable, "-c", f"{program}\n{count}"],
+        [sys.executable, "-c", program],
         capture_output=True,
         text=True,
         check=True,
         cwd=folder,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
     )
-    return set(done.stdout.split())
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def by_question() -> dict[str, set[str]]:
+    """By workflow, the modules of mffit that it loads; of one process that forgets them between two workflows."""
+    program = f"""
+import importlib, json, sys
+found = {{}}
+for question in {[*QUESTIONS]}:
+    importlib.import_module(f"mffit.pipeline.{{question}}")
+    mine = [name for name in sys.modules if name.split(".")[0] in ("mffit", "tir")]
+    found[question] = [name for name in mine if name.startswith("mffit.")]
+    for name in mine:
+        del sys.modules[name]
+print(json.dumps(found))
+"""
+    done = in_a_process(program)
+    return {question: set(names) for question, names in json.loads(done).items()}
 
 
 def own(modules: set[str]) -> list[str]:
@@ -71,8 +95,9 @@ def test_spin_loads_no_fit_and_no_other_question(tmp_path):
 
 
 @pytest.mark.parametrize("question", QUESTIONS)
-def test_no_question_imports_the_others(question):
-    modules = loaded(f"import mffit.pipeline.{question}")
+def test_no_question_imports_the_others(by_question, question):
+    modules = by_question[question]
+    assert f"mffit.pipeline.{question}" in modules
     others = {f"mffit.{answer}" for name, answer in QUESTIONS.items() if name != question}
     assert not others & modules
 

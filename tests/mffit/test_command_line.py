@@ -318,7 +318,7 @@ def test_build_prints_one_screen_and_everything_on_request(tmp_path, capsys):
     assert said_of_road.index("road, 1500 N") < said_of_road.index("written to")
     assert "toy-normal.tir misses the road by" in said_of_road
     assert "or the other side of the disc" in said_of_road
-    assert mffit("build", project, "--explain") == 0
+    assert mffit("build", project, "--explain", "--no-report") == 0
     whole = capsys.readouterr()
     assert "Tested: " in whole.out
     assert "Tested: " not in said.out

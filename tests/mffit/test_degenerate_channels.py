@@ -20,10 +20,8 @@ TABLES = {
     "empty": TABLE[:0],
     "one row": TABLE[:1],
     "constant": pd.concat([TABLE[3:4]] * 20),
-    "no moment": TABLE.assign(Mx_Nm=0.0),
-    "no slip": TABLE.assign(kappa=np.nan),
     "no force": TABLE.assign(Fy_N=0.0),
-    "no temperature": TABLE.assign(T_degC=np.nan),
+    "no moment, slip and temperature": TABLE.assign(Mx_Nm=0.0, kappa=np.nan, T_degC=np.nan),
     "one gap": TABLE.assign(Fy_N=TABLE.Fy_N.where(TABLE.index != 5)),
     "no load": TABLE.assign(Fz_N=0.0),
     "standstill": TABLE.assign(V_mps=0.0),
@@ -68,7 +66,7 @@ OF_FILES = {
     "convert back": ("convert", "{}.old.tir", "--out", "{}.new.tir"),
     "export c": ("export", "c", "{}", "--out", "{}.c"),
     "export matlab": ("export", "matlab", "{}", "--out", "{}.m"),
-    "export table": ("export", "table", "{}", "--for", "csv", "--error", "30", "--out", "{}.table"),
+    "export table": ("export", "table", "{}", "--for", "csv", "--error", "90", "--out", "{}.table"),
 }
 OF_PROJECTS = {
     "build": ("build", "{}", "--no-report"),

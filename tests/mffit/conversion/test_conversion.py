@@ -569,10 +569,21 @@ def test_a_motorcycle_tyre_in_the_older_formula(tmp_path):
     assert not {"Fx", "Fy"} & {row.channel for row in found.poor if row.rms_share > 0.02}
 
 
-def test_the_older_file_holds_at_the_pressure_of_the_newer(tmp_path):
-    tyre = tir.read(SAMPLE).replace(INFLPRES=200e3, PPY1=0.5, PPY2=0.9, PPX1=-0.4, QSY8=0.7)
-    tyre.write(tmp_path / "soft.tir")
-    (tmp_path / "old.tir").write_text(to_old(tmp_path / "soft.tir", "pac2002").text, encoding="ascii")
+@pytest.fixture(scope="module")
+def soft_and_odd(tmp_path_factory):
+    """A tyre below its nominal pressure, with PKY1 and PKY4 of the other sign, which is the same tyre; its file of PAC2002."""
+    tyre = tir.read(SAMPLE)
+    tyre = tyre.replace(
+        INFLPRES=200e3, PPY1=0.5, PPY2=0.9, PPX1=-0.4, QSY8=0.7, PKY1=-tyre["PKY1"], PKY4=-tyre["PKY4"]
+    )
+    path = tmp_path_factory.mktemp("odd") / "odd.tir"
+    tyre.write(path)
+    return tyre, to_old(path, "pac2002")
+
+
+def test_the_older_file_holds_at_the_pressure_of_the_newer(soft_and_odd, tmp_path):
+    tyre, found = soft_and_odd
+    (tmp_path / "old.tir").write_text(found.text, encoding="ascii")
     old = forces_of(tmp_path / "old.tir", 1400.0, 0.05, 0.0, 0.02)
     soft, nominal = tyre(1400.0, 0.05, kappa=0.02), tyre(1400.0, 0.05, kappa=0.02, p=tyre["NOMPRES"])
     assert abs(nominal.Fy / soft.Fy - 1.0) > 0.02
@@ -583,12 +594,9 @@ def test_the_older_file_holds_at_the_pressure_of_the_newer(tmp_path):
     )
 
 
-def test_a_file_of_pac2002_is_as_chrono_reads_it_and_keeps_the_overturning_moment(tmp_path):
-    """With PKY1 and PKY4 of the other sign, which is the same tyre. Chrono reads lines of 200 characters by blanks and quotes."""
-    tyre = tir.read(SAMPLE)
-    tyre = tyre.replace(PKY1=-tyre["PKY1"], PKY4=-tyre["PKY4"])
-    tyre.write(tmp_path / "odd.tir")
-    found = to_old(tmp_path / "odd.tir", "pac2002")
+def test_a_file_of_pac2002_is_as_chrono_reads_it_and_keeps_the_overturning_moment(soft_and_odd):
+    """Chrono reads lines of 200 characters by blanks and quotes."""
+    _, found = soft_and_odd
     worst = {row.channel: row.rms_share for row in found.misfit if row.small_camber and not row.slipping}
     assert worst["Fy"] < 0.01
     assert worst["Mx"] < 0.01

@@ -109,8 +109,11 @@ def test_units_that_a_file_does_not_state_are_marked_as_assumed(tmp_path):
     assert content["tyre"]["nominal_pressure"] == pytest.approx(83, abs=1)
 
 
-def test_from_the_recording_to_the_property_file(machine, tmp_path, capsys):
+def test_from_the_recording_to_the_property_file(tmp_path, capsys):
     """The tyre's own curve, which lags and scatters in the recording, to 3 % of the load."""
+    machine = write_mat(
+        recording(sigma=0.3, cambers=CAMBERS[:2], pressures=(83.0,)), tmp_path / "cornering.mat"
+    )
     project = tmp_path / "project"
     options = ["--unloaded-radius", "0.2057", "--nominal-load", "1500"]
     main(["init", "--from", str(machine), str(project), *options])
@@ -121,7 +124,7 @@ def test_from_the_recording_to_the_property_file(machine, tmp_path, capsys):
     assert content["rig"] == {"type": "flat-track", "axes": "sae"}
     assert (project / "cornering.png").stat().st_size > 10_000
     stretches = pd.read_csv(project / "stretches.csv")
-    assert (stretches["points"] > 0).sum() >= 18
+    assert (stretches["points"] > 0).sum() >= 6
     result = pipeline.build(project / "tyre.toml", project / "out", with_report=False)
     alpha = np.radians(np.linspace(-8.0, 8.0, 33))
     for load in LOADS:
@@ -130,7 +133,7 @@ def test_from_the_recording_to_the_property_file(machine, tmp_path, capsys):
             np.sqrt(np.mean((result.tyre(load, alpha=alpha, p=83e3, Vx=11.0).Fy - truth) ** 2)) < 0.03 * load
         )
     points = pd.read_csv(project / "out" / "points.csv")
-    assert set(points["sweep"]) >= {"cornering:01", "cornering:18"}
+    assert set(points["sweep"]) >= {"cornering:01", "cornering:06"}
     assert {"file", "line", "direction", "mount", "T_degC"} <= set(points)
     pd.testing.assert_frame_equal(
         pd.read_csv(project / "out" / "stretches.csv")[["points"]], stretches[["points"]]
