@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.signal import lfilter
+import scipy  # its parts are loaded on first use
 
 from mffit.virtual_rig.machine import Channels, Machine, at_the_tyre, reported, true_alpha
 from mffit.virtual_rig.plan import RecordingTable
@@ -86,7 +86,7 @@ def lagged(alpha: np.ndarray, V: float, sigma: float, rate_Hz: float) -> np.ndar
     # Within a sample the response to a ramp of slope 1/T is (t - seconds (1 - exp(-t/seconds)))/T.
     new = 1.0 - seconds * rate_Hz * (1.0 - decay)
     old = 1.0 - decay - new
-    lagged_alpha, _ = lfilter([new, old], [1.0, -decay], alpha, zi=[(1.0 - new) * alpha[0]])
+    lagged_alpha, _ = scipy.signal.lfilter([new, old], [1.0, -decay], alpha, zi=[(1.0 - new) * alpha[0]])
     return np.asarray(lagged_alpha)
 
 
@@ -95,4 +95,4 @@ def noise(time: np.ndarray, size: float, table: RecordingTable, generator: np.ra
     fresh = generator.standard_normal(len(time))
     correlation = math.exp(-1.0 / (table.correlation_s * table.rate_Hz)) if table.correlation_s else 0.0
     fresh[1:] *= math.sqrt(1.0 - correlation**2)
-    return np.asarray(size * lfilter([1.0], [1.0, -correlation], fresh))
+    return np.asarray(size * scipy.signal.lfilter([1.0], [1.0, -correlation], fresh))

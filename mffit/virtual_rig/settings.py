@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 
 from mffit.virtual_rig.plan import RigPlan, SweepPlan
 from tir.frozen import ReadOnlyArrays
@@ -69,7 +68,7 @@ def _rolled(sweeps: list[Settings]) -> list[Settings]:
     if not sweeps:
         return []
     t, V = (np.concatenate([getattr(sweep, name) for sweep in sweeps]) for name in ("t", "V"))
-    distance = cumulative_trapezoid(V, t, initial=0.0)
+    distance = np.append(0.0, np.cumsum(np.diff(t) * (V[1:] + V[:-1]) / 2.0))
     ends = np.cumsum([len(sweep) for sweep in sweeps])[:-1]
     return [replace(s, rolled_m=d) for s, d in zip(sweeps, np.split(distance, ends), strict=True)]
 
