@@ -39,6 +39,7 @@ def test_what_varies_is_an_input_with_the_distance_of_its_settings():
     assert found["alpha"].spacing == pytest.approx(0.2 / 12.0)  # it is swept
     assert found["Fz"].width / found["Fz"].spacing == pytest.approx(2.0)
     assert found["gamma"].spacing == pytest.approx(0.05)
+    assert {name for name, one in found.items() if one.is_held} == {"Fz", "gamma"}
 
 
 def test_a_setting_that_a_run_holds_does_not_wander_within_it():
@@ -103,6 +104,7 @@ def test_one_side_of_a_disc_was_tested_on_the_other_side_too():
     found = {one.name: one for one in inputs_of(programme(phi_t=-0.75))}
     ends = {name: (one.lower, one.upper) for name, one in found.items() if one.mirrored}
     assert ends == {"alpha": (-0.1, 0.1), "gamma": (-0.05, 0.05), "phi_t": (-0.75, 0.75)}
+    assert found["phi_t"].spacing == 0.75  # the straight road lies between the two settings
     assert not any(one.mirrored for one in inputs_of(programme()))  # a straight path is its own mirror image
     both = np.repeat([0.75, -0.75], 63)
     assert not any(one.mirrored for one in inputs_of(programme(phi_t=both)))

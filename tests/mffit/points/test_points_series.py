@@ -99,8 +99,9 @@ def test_the_points_of_many_series_are_covered_by_their_errors(project):
     assert 0.89 <= np.mean(inside) <= 0.99
 
 
-@pytest.mark.parametrize("seed", [0, 1])
-@pytest.mark.parametrize("how", [{}, {"settle_s": 2.0}, {"settle_s": 1.0, "encoder_deg": 0.05}])
+@pytest.mark.parametrize(
+    ("seed", "how"), [(0, {}), (1, {"settle_s": 2.0}), (0, {"settle_s": 1.0, "encoder_deg": 0.05})]
+)
 def test_every_point_can_be_left_out_alone_by_its_lines(project, how, seed):
     """However long each rest was; what is left of a rest, such as the part in which the force settles, gives no other point."""
     name, holds = "series.csv", np.random.default_rng(seed).uniform(5.0, 60.0, len(STATIONS))

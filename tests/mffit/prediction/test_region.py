@@ -7,7 +7,7 @@ import pytest
 from conftest import CAMBERS, LOADS, Built, brush
 
 import tir
-from mffit.prediction import MissedAtReadings, missed_sentence
+from mffit.prediction import MissedAtReadings, missed_sentence, region
 from mffit.prediction.region import SIDES, MissedRegion, _clearest, _Seen, missed_at_readings
 
 NAMES = ("Fz", "p")
@@ -132,3 +132,15 @@ def test_a_sweep_in_which_a_channel_was_not_read_is_no_region(foreign: Built):
     part = points.replace(Fy=np.where(points.sweep == 0, np.nan, points.Fy))
     found = missed_at_readings(result.prediction, result.fit.tyre, part, model, {"Fy"})
     assert found["Fy"].size == pytest.approx(result.fit.left_by_formula.channels["Fy"].size, rel=0.3)
+
+
+def test_a_difference_of_the_two_signs_is_as_uncertain_as_both_together(foreign: Built, monkeypatch):
+    """Readings of one sign scatter on their own, so variances add."""
+    seen: dict[str, list[_Seen]] = {}
+    monkeypatch.setattr(region, "_clearest", lambda names, found: seen.update(found))
+    result = foreign.result
+    missed_at_readings(result.prediction, result.fit.tyre, result.points, result.fit.model, {"Fy"})
+    assert len(seen["apart"]) == len(LOADS) * len(CAMBERS)
+    for up, down, apart in zip(seen["positive"], seen["negative"], seen["apart"], strict=True):
+        assert apart.share == pytest.approx(up.share - down.share)
+        assert apart.u**2 == pytest.approx(up.u**2 + down.u**2)
