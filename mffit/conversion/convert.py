@@ -57,7 +57,7 @@ def convert(
     Returns
     -------
     Conversion
-        ``.tyre.write("new.tir")`` writes the file; ``.misfit`` says how near it comes, by channel and region.
+        ``.tyre.write("new.tir")`` writes the file; ``.misfit`` states the difference of the forces, by channel and region.
 
     Raises
     ------

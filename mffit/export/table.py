@@ -68,7 +68,7 @@ def write_table(
     Raises
     ------
     InputError
-        A range or a form is unusable, a force is no number, or the folder cannot be written to.
+        A range or a form is unusable, a force is not a number, or the folder cannot be written to.
     TirError
         The file cannot be read.
     """

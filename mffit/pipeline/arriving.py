@@ -15,7 +15,7 @@ from mffit.recordings.project_file import relative
 from mffit.sheets import file_of
 
 BINARY = (".gz", ".mat", ".xlsx", ".xlsm", ".parquet")
-"""Endings of files whose reader refuses a part of one."""
+"""Endings of files whose reader refuses an incomplete file."""
 
 
 Signature = tuple[int, int]
@@ -31,7 +31,7 @@ class Arrived(NamedTuple):
 
 
 class ArrivingFiles:
-    """The files of a project, looked at again and again."""
+    """The files of a project, checked repeatedly."""
 
     def __init__(self) -> None:
         self.files: dict[
@@ -81,7 +81,7 @@ class ArrivingFiles:
 
 
 def is_cut_off(path: Path) -> bool:
-    """Whether a text file lacks the end of its last line, as one does that is being written."""
+    """Whether a text file lacks the end of its last line, as while it is being written."""
     if path.name.lower().endswith(BINARY):
         return False
     with suppress(OSError), path.open("rb") as file:

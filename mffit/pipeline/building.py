@@ -56,7 +56,7 @@ def build(
     ----------
     config : path of a ``tyre.toml``, its content, or a loaded Config
     out : folder to write to; nothing is written if None
-    ensemble : number of property files to draw from the posterior, beside the best one
+    ensemble : number of property files to draw from the posterior, in addition to the best one
     with_report : write ``report.html`` and ``plots`` too; without them a build takes about half the time
     progress : called with a sentence before each step
 

@@ -36,7 +36,7 @@ def compare(
     out: str | Path | None = None,
     progress: Progress = silent,
 ) -> Comparison:
-    """Put two property files, a file and measured points, or two builds side by side.
+    """Compare two property files, a file and measured points, or two builds.
 
     Parameters
     ----------
@@ -49,8 +49,8 @@ def compare(
     Returns
     -------
     Comparison
-        Numbers, curves and coefficients, with the differences ranked; with uncertainties if a build's ``result.json`` is
-        beside the file.
+        Numbers, curves and coefficients, with the differences ranked; with uncertainties if a build's ``information.json`` is
+        next to the file.
 
     Raises
     ------
@@ -88,7 +88,7 @@ def write_comparison(found: Comparison, out: Path, read: Sequence[Path]) -> None
 
 
 def _subject(path: Path, given: Mapping[str, float]) -> ComparedSubject:
-    """A property file, or that of a build's folder, with its covariance if its build is beside it."""
+    """A property file, or that of a build's folder, with its covariance if its build is next to it."""
     build = None
     if path.is_dir():
         build = _build_in(path)
@@ -124,7 +124,7 @@ def _build_in(folder: Path) -> Specimen:
 def _sides(
     paths: Sequence[Path], given: Mapping[str, float], turn_slip: bool | None
 ) -> list[ComparedSubject]:
-    """Both subjects; those with one name get as much of their paths as makes the names differ."""
+    """Both subjects; equal names get as much of their paths as makes them differ."""
     sides = [_subject(path, given) for path in paths]
     files = [path / side.name if path.is_dir() else path for path, side in zip(paths, sides, strict=True)]
     return [

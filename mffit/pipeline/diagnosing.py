@@ -33,7 +33,7 @@ from mffit.progress import READING, Progress, silent
 from tir import Tyre
 
 WRITTEN = ("diagnosis.json", "diagnosis.html")
-"""Files that every diagnosis writes beside its property file."""
+"""Files that every diagnosis writes in addition to its property file."""
 
 
 def diagnose(
@@ -60,6 +60,11 @@ def diagnose(
     -------
     Diagnosis
         With the direct method repeated on corrected points if a rig effect was found.
+
+    Raises
+    ------
+    InputError, tir.errors.TirError
+        The sweeps or the model cannot be used; nothing is written then.
     """
     config = configuration.load(config)
     progress(READING)
@@ -145,7 +150,7 @@ def _seen_from(out: str | Path | None, file: Path | None) -> str:
 
 
 class ChosenModel(NamedTuple):
-    """The model that a diagnosis looks at."""
+    """The model that a diagnosis examines."""
 
     tyre: Tyre
     notes: tuple[DiagnosisNote, ...] = ()  #: on the choice

@@ -76,7 +76,7 @@ def judged(
 
 
 def _cause(against: Sequence[Doubt], left: Remains) -> str:
-    """What would explain a misfit: a sweep that contradicts the others, else the best effect; empty if none can be seen."""
+    """What would explain a misfit: a sweep that contradicts the others, else the best effect; empty if none is found."""
     if against:
         looks = f" and looks like {against[0].looks}" if against[0].looks else ""
         return f"{against[0].sweep} contradicts the other sweeps{looks}"
@@ -84,7 +84,7 @@ def _cause(against: Sequence[Doubt], left: Remains) -> str:
 
 
 def _undeclared(left: Remains) -> str:
-    """Key of [rig] by which the best effect is a rig error that is declared as absent; empty if it is none."""
+    """Key of [rig] of the best effect, if that is a rig error declared as absent; else empty."""
     assert left.effect is not None
     found = [
         None if (error := error_of(name)) is None else error.declared for name in left.effect.best.numbers

@@ -45,7 +45,7 @@ def build_many(
     Parameters
     ----------
     sources : paths of ``tyre.toml``
-    out : folder in which each tyre gets a folder of its name; default ``out`` beside each ``tyre.toml``
+    out : folder in which each tyre gets a folder of its name; default ``out`` next to each ``tyre.toml``
     jobs : number of processes, each of which builds one tyre at a time; 1 builds in this process
     dask : address of a Dask scheduler, whose workers see the same files and have mffit; ``jobs`` is ignored then
     ensemble, with_report : as in :func:`build`

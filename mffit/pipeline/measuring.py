@@ -33,7 +33,20 @@ from tir import Tyre
 def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None = None) -> Measured:
     """The alignment check and the direct method only, judged by the rules that need no fit.
 
-    Writes ``spin.json`` if ``out`` is given.
+    Parameters
+    ----------
+    config : path of a ``tyre.toml``, its content, or a loaded Config
+    out : folder for ``spin.json``; nothing is written if None
+
+    Returns
+    -------
+    Measured
+        Stiffnesses, radii, turn-slip force and eps_gamma by load, with their budgets; SI units, ISO signs.
+
+    Raises
+    ------
+    InputError
+        On bad input, or without points from which eps_gamma or a stiffness can be measured.
     """
     config = configuration.load(config)
     measured = spin_of(config, read_points(config), made(input_hashes(config)))
@@ -88,9 +101,16 @@ def align(
     axes, path_centre : axes and side of the path centre of a bare table
     resolution_deg : smallest angle by which the axis can be adjusted [deg]
 
-    Notes
-    -----
-    The cornering stiffness is measured if the sweeps of a ``tyre.toml`` allow it; a bare table needs the usual one.
+    Returns
+    -------
+    Alignment
+        The correction in degrees of the rig's axis, by load and step. The cornering stiffness is measured if the sweeps of a
+        ``tyre.toml`` allow it; for a bare table the usual one is assumed.
+
+    Raises
+    ------
+    InputError
+        The input is wrong, or no load has zeros in both directions.
     """
     source = Path(source)
     if source.suffix == ".toml":

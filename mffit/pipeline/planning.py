@@ -185,7 +185,7 @@ def write_plan(found: Plan, out: Path) -> None:
 def sheet(config: Config, points: Points, measures: Sequence[str] = ()) -> pd.DataFrame:
     """The set-points of a run in the rig's axes and the columns of sweep files; the readings are empty.
 
-    ``measures`` are channels beside Fy and Mz.
+    ``measures`` are channels in addition to Fy and Mz.
     """
     signs = configuration.axis_signs(config)
     angles = {name: np.degrees(getattr(points, name)) * signs[name] + 0.0 for name in ("alpha", "gamma")}

@@ -44,7 +44,7 @@ DIGITS = 16
 TURN_SLIP = {"turn-slip": "on", "normal": "off", "both": "on or off"}
 """Setting of the simulation's turn slip for each use of a file."""
 PLAIN = " /\\!#$&'()+,;=@[]{}~"
-"""Characters of file names that are written in comments without %XX, beside letters and digits."""
+"""Characters of file names that comments contain without %XX, in addition to letters and digits."""
 
 Annotate = Callable[[Tyre, str], Tyre]
 """Adds measured quantities and provenance as structured comments to the tyre for a use."""
@@ -136,7 +136,7 @@ def known_of_model(
 
     Coefficients fitted to the present sweeps (``same``, see :func:`fitted_to`, or ``fresh``: just now) are fitted again; those
     of a build on other sweeps have that build's posterior. ``model.u_coefficients`` takes precedence over a posterior. A file
-    counts as built only if result.json beside it has the same values, because it may have been edited since.
+    counts as built only if result.json next to it has the same values, because it may have been edited since.
     """
     posterior = None if path is None else posterior_of(tyre, path)
     if same and (fresh or posterior is not None):

@@ -69,7 +69,7 @@ def at_rest(
 ) -> dict[float, dict[str, Quantity]]:
     """By load [N], stiffnesses of the fitted model on a straight path where sweeps moved; empty if none did.
 
-    The force lags behind a moving angle, and the few readings at rest beside moving sweeps hardly show a slope. The fit separates
+    The force lags behind a moving angle, and few readings at rest hardly show a slope. The fit separates
     the lag from the tyre. They are stated at the nominal load, too, which is that of a build's headline.
     """
     if not np.any(np.isfinite(points.time) & points.free_rolling):

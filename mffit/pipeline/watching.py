@@ -34,12 +34,12 @@ def watch(
     once: bool = False,
     pause: Callable[[float], object] | None = None,
 ) -> Iterator[WatchedCampaign]:
-    """What the files of a campaign say, at first and after every change.
+    """Results of a campaign while it runs, at first and after every change.
 
     Parameters
     ----------
-    path : of a ``tyre.toml``; sweeps that it lists may be missing yet, and recordings in its folder that it does not list are
-        taken in
+    path : of a ``tyre.toml``; sweeps that it lists may still be missing, and recordings in its folder that it does not list are
+        used
     every : time from one look at the folder to the next [s]
     once : end when nothing is being written any more
     pause : waits for a time [s]; default ``time.sleep``
@@ -64,7 +64,7 @@ def watch(
 
 
 class _Watch:
-    """A campaign that is looked at again and again."""
+    """A campaign that is checked repeatedly."""
 
     def __init__(self, path: Path) -> None:
         self.path, self.config = path, configuration.load(path, awaiting=True)
@@ -98,7 +98,7 @@ class _Watch:
         return self._last
 
     def _campaign(self) -> WatchedCampaign:
-        """What the complete files say."""
+        """The results of the complete files."""
         files, listed = self.arriving.files.values(), {entry.file for entry in self.config.sweep}
         sound = tuple(file.entry for file in files if not file.problem)
         doubted = {name for name, (is_refused, *_) in self._states.items() if is_refused}
@@ -140,7 +140,7 @@ class _Watch:
         listed: Collection[str],
         awaited: Collection[str],
     ) -> Iterator[Arrival]:
-        """What became of files since the campaign before; other numbers in a sentence are no change."""
+        """Changes of files since the previous campaign; other numbers in a sentence do not count."""
         before, self._states = self._states, {}
         files = np.array(reading.points.files)[reading.points.file] if reading else np.array([], str)
         for file in self.arriving.files.values():

@@ -95,7 +95,7 @@ def on_cluster(wanted: Sequence[Job], address: str, build_one: BuildOne) -> Outc
 
 
 def _in_process(build_one: BuildOne, job: Job, sender: Connection) -> None:
-    """Build in this process; an interrupted build removes its temporary files and says nothing."""
+    """Build in this process; an interrupted build removes its temporary files without a message."""
     with contextlib.suppress(KeyboardInterrupt):
         sender.send(build_one(job))
 

@@ -28,7 +28,7 @@ keys(Arrival, "file state points why? sweep?")
 
 @dataclass(frozen=True, slots=True, repr=False)
 class WatchedCampaign(Brief):
-    """A campaign after a change: what came in, and what all files say together."""
+    """A campaign after a change: the new files, and the results of all files."""
 
     changed: tuple[Arrival, ...]  #: files, since the campaign before
     taken: tuple[str, ...]  #: files that count
@@ -48,7 +48,7 @@ class WatchedCampaign(Brief):
 
     @property
     def headline(self) -> str:
-        """How far the campaign is."""
+        """Progress of the campaign, as a sentence."""
         there = len(self.taken)
         return f"{there} of {there + len(self.awaited)} files, {self.points} points"
 

@@ -67,7 +67,7 @@ class BuildResult(Brief):
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Sentences on why the result is not to be trusted; empty if it is."""
+        """Sentences on why the result is not to be trusted; empty if it is to be trusted."""
         return self.trust.reasons
 
     @property

@@ -24,7 +24,7 @@ from mffit.virtual_rig.truth import Truth
 def simulate(
     plan: RigPlan | Mapping[str, Any] | str | Path, out: str | Path, seed: int | None = None
 ) -> Truth:
-    """The truth of a virtual test campaign, whose files are written.
+    """Write the files of a virtual test campaign and return the truth behind them.
 
     Parameters
     ----------
