@@ -1,6 +1,6 @@
 """JSON of records, with the keys that users' scripts rely on.
 
-The keys of a record are its fields, unless :func:`keys` states others beside its class: their order, attributes and units.
+The keys of a record are its fields, unless :func:`keys` states others next to its class: their order, attributes and units.
 Standard JSON has no NaN and no infinity; both become null.
 """
 

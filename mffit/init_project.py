@@ -55,7 +55,7 @@ def sample_names() -> list[str]:
 
 
 def _samples() -> Traversable:
-    """The folder of the samples: inside an installed package, beside the package in a source tree."""
+    """The folder of the samples: inside an installed package, next to the package in a source tree."""
     installed = resources.files("mffit").joinpath("samples")
     return installed if installed.is_dir() else Path(__file__).parents[1] / "samples"
 

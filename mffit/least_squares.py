@@ -32,7 +32,7 @@ SHORTENED = 0.3
 """Factor by which an undamped move becomes shorter after each rejection."""
 
 HOLDS_ALL = 1e3
-"""Growth of the damping within one step from which undamped moves are tried beside it: it then holds numbers that need none."""
+"""Growth of the damping within one step from which undamped moves are tried too: it then holds numbers that need none."""
 
 UNDAMPED = 1e-9
 """Smallest damping: it only keeps the quadratic form positive definite against rounding."""
@@ -202,7 +202,7 @@ def solve(
     If residuals are large, their second derivatives matter. These are estimated from the gradients of successive steps, and
     every step is tried with and without them (Dennis, Gay and Welsch 1981). The search ends after ``max_steps`` accepted steps,
     or if an undamped step would reduce the sum of squares by less than the share ``tolerance`` (Bates and Watts 1981); a damped
-    step is no criterion, because its decrease is small whenever the damping is large.
+    step is not a criterion, because its decrease is small whenever the damping is large.
     """
     objective = Objective.of(problem, numbers)
     x = np.clip([n.start for n in numbers], objective.lower, objective.upper)

@@ -28,7 +28,7 @@ PACKAGES = ("mffit", "tir")
 SOURCES = (".py", ".csv", ".toml", ".j2", ".js", ".css")
 """Endings of the files that the program consists of: code, tables, templates."""
 BESIDE = ("samples", "__pycache__", "pyproject.toml")
-"""What an installation has or lacks beside them, by the way in which it was made."""
+"""What an installation has or lacks in addition, by the way in which it was made."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

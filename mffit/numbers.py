@@ -1,4 +1,4 @@
-"""Named numbers as one normal distribution: what readings tell of them, their priors, and every question about both."""
+"""Named numbers as one normal distribution: information from readings, priors, and every question about both."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Numbers(ReadOnlyArrays, Brief):
     def of(
         cls, names: Sequence[str], values: Sequence[float] | np.ndarray, covariance: np.ndarray
     ) -> Numbers:
-        """Numbers of which no more than a covariance (k, k) is known."""
+        """Numbers of which only a covariance (k, k) is known."""
         k, at = len(names), np.asarray(values, dtype=float)
         return cls(tuple(names), at, inverse(covariance), np.zeros(k), at, np.full(k, math.inf))
 
@@ -69,7 +69,7 @@ class Numbers(ReadOnlyArrays, Brief):
         return [place[name] for name in names]
 
     def covariance_of(self, names: Sequence[str]) -> np.ndarray:
-        """Covariance (j, j) of some numbers; 0 for a name that is none of them, which is exactly known."""
+        """Covariance (j, j) of some numbers; 0 for an unknown name, whose number is exact."""
         known = [i for i, name in enumerate(names) if name in self.stderr]
         rows = self.rows(names[i] for i in known)
         out = np.zeros((len(names), len(names)))

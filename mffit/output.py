@@ -44,7 +44,7 @@ class OutputEntry(NamedTuple):
 def output_folder(
     out: Path, *, by: str = "mffit", protected: Iterable[Path] = (), outdated: Collection[str] = ()
 ) -> Iterator[Path]:
-    """A temporary folder beside ``out`` whose files move to ``out`` only if the block succeeds.
+    """A temporary folder next to ``out`` whose files move to ``out`` only if the block succeeds.
 
     ``by`` is the command that writes; only files of the same command are ever removed. ``protected`` are files that the run
     reads, ``outdated`` names of files that would be mistaken for this run's output if an earlier run left them.
@@ -75,7 +75,7 @@ def output_folder(
 
 
 def _temporary_folder(out: Path) -> Path:
-    """A new folder beside ``out``; folders that killed runs left are removed."""
+    """A new folder next to ``out``; folders that killed runs left are removed."""
     parent = out.absolute().parent
     refuse_unusable(out)
     try:
@@ -137,7 +137,7 @@ def refuse_unusable(out: Path, *, is_file: bool = False) -> None:
     if not nearest.is_dir():
         where = "" if nearest == out.absolute() else f"cannot be written to: {nearest} "
         raise InputError(f"{where}is a file, but the output needs a folder; {ELSEWHERE}", file=out)
-    # The temporary folder of the run is beside the output folder.
+    # The temporary folder of the run is next to the output folder.
     for place in {nearest, nearest if is_file or nearest != folder else folder.parent}:
         try:
             os.rmdir(tempfile.mkdtemp(prefix=f"{_prefix(out.name)}{os.getpid()}-", dir=place))

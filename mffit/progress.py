@@ -34,7 +34,7 @@ def remaining(
 
     Parameters
     ----------
-    sentence : of the step; both are None for one that is no step of a build
+    sentence : of the step; both are None for a sentence outside the steps of a build
     seconds : from the beginning of the build to that of the step [s]
     since : from the beginning of the step [s]: the share grows as fast as it did before, up to that of the next step; the time
         left is None until the fit, the longest step, has shown how fast it is
@@ -53,7 +53,7 @@ def remaining(
 
 
 class ShownStep:
-    """A step of a run that has begun, as text that tells how far the run is."""
+    """A step of a run that has begun, as text with the progress of the run."""
 
     def __init__(self, sentence: str, begun: float, *, writes: bool = True) -> None:
         """``begun`` is when the run began, as ``time.monotonic`` has it."""

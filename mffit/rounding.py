@@ -99,7 +99,7 @@ def stated(quantity: Quantity | None, unit: str = "", scale: float = 1.0) -> str
 
 
 def as_good_as(value: float | None, u: float | None) -> str:
-    """A value with the digits that an uncertainty stated beside it leaves; 0 without power of ten."""
+    """A value with the digits that its stated uncertainty leaves; 0 without power of ten."""
     if value == 0.0 and u is not None and 0.0 < u < constants.SMALLEST_PLAIN_U:
         return "0"
     return rounded(value, u)[0]

@@ -29,5 +29,5 @@ def tested_limit(tyre: Tyre, key: str) -> float:
 
 
 def lacks_fx(tyre: Tyre) -> bool:
-    """Whether nobody measured the longitudinal force: its stiffness is an estimate by the comments of the file."""
+    """Whether the longitudinal force was not measured: by the comments of the file its stiffness is an estimate."""
     return tyre.status.get("PKX1", "").startswith(NOT_MEASURED)

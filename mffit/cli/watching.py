@@ -20,7 +20,7 @@ def watch(tyre_toml: Path, once: bool, voice: Voice) -> None:
     """Follow a campaign while it runs.
 
     Prints points, eps_gamma, alignment and the most informative next run whenever a file of the project is new, changed or gone.
-    Sweeps that TYRE_TOML lists may be missing yet; recordings beside it that it does not list are taken in, and nothing is
+    Sweeps that TYRE_TOML lists may still be missing; recordings next to it that it does not list are used, and nothing is
     written. With --json, one line of JSON for each change. Ctrl-C ends it.
     """
     from mffit import as_json, pipeline

@@ -50,7 +50,7 @@ class Difference:
     u_first: float | None = None  #: k = 1; None if unknown
     u_second: float | None = None
     covariance: float = 0.0  #: covariance of both sides from errors of a common rig
-    at_least_first: bool = False  #: a largest force that is no peak, see :class:`mffit.rounding.AtLeast`
+    at_least_first: bool = False  #: a largest force that is not a peak, see :class:`mffit.rounding.AtLeast`
     at_least_second: bool = False
 
     @property

@@ -131,7 +131,7 @@ def notes_between(first: ComparedSubject, second: ComparedSubject, shared: Share
 
 
 def notes_on_peaks(numbers: Iterable[Difference], tested: Tested) -> Iterator[str]:
-    """A remark on the largest forces that are no peaks, if there are any."""
+    """A remark on the largest forces that are not peaks, if there are any."""
     ends = {tested.end(row.key) for row in numbers if row.at_least_first or row.at_least_second}
     if ends:
         yield f'"At least": the curve does not fall up to the end of the slip compared, {listed(sorted(ends))}.'

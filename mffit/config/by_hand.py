@@ -78,7 +78,7 @@ def as_in_the_file(entry: CoefficientByHand) -> object:
 
 
 def named(given: object) -> object:
-    """The content of ``[coefficients]`` with the name beside every entry, as :func:`read_entry` needs it."""
+    """The content of ``[coefficients]`` with the name next to every entry, as :func:`read_entry` needs it."""
     if not isinstance(given, Mapping):
         return given
     return {name: (name, content) for name, content in given.items()}
@@ -169,7 +169,8 @@ def unsettable(name: str) -> str:
 def _number(given: object, row: Parameter, key: str = "") -> float:
     """The number under a key of the coefficient's table; without a key, the value at which it is held.
 
-    Refuses what is no finite number and what the equations cannot take. A value beyond those of published tyres is a declaration.
+    Refuses values that are not finite or that the equations cannot take. A value beyond those of published tyres is a
+    declaration.
     """
     if isinstance(given, str):
         quoted = NUMBER_IN_QUOTES.fullmatch(given)

@@ -191,7 +191,7 @@ def known_keys(*models: type[BaseModel]) -> dict[str, tuple[str, ...]]:
 
 
 def _models(annotation: object, below: str = "") -> list[tuple[type[BaseModel], str]]:
-    """Models within the type of a field, with ``*`` for those that stand under keys of any name."""
+    """Models within the type of a field, with ``*`` for those under keys of any name."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [(annotation, below)]
     below = "*" if getattr(annotation, "__origin__", None) is dict else below

@@ -60,7 +60,7 @@ OF_CHANNEL = {
     "Mz": ("ALIGNING_COEFFICIENTS", "SS"),
     "Mx": ("OVERTURNING_COEFFICIENTS", "-"),
 }
-"""Section of the coefficients of a channel, and how those begin that are none of its force without slip to the other side. The
+"""Section of a channel's coefficients, and prefixes of those that do not affect its pure slip. The
 side force comes before the moments, into which it enters."""
 
 

@@ -41,7 +41,7 @@ class OldForces(NamedTuple):
 def in_terms_of_62(values: Mapping[str, Any]) -> SimpleNamespace:
     """The old coefficients under the names of MF 6.2: the scaling factors of camber (34, 48, 63) are within the coefficients.
 
-    PHY3 stays beside them, because 6.2 has nothing like it.
+    PHY3 stays in addition, because 6.2 has nothing like it.
     """
     scaled = {
         name: values[name] * values[factor] ** power for name, (factor, power) in SCALED_BY_CAMBER.items()

@@ -39,7 +39,7 @@ OF_62 = {"PKY4": 2.0, "QSY7": 1.0, "QSY8": 0.0}
 
 @dataclass(frozen=True, slots=True)
 class OldFile:
-    """An old property file in SI, its own keys beside those of MF 6.2."""
+    """An old property file in SI, with its own keys in addition to those of MF 6.2."""
 
     kind: str  #: in words, such as "MF-Tyre 5.2"
     values: Mapping[str, Any]  #: every parameter of MF 6.2 and of :data:`OWN`

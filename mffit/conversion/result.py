@@ -66,7 +66,7 @@ def misfits(new: Sequence[Any], at: Conditions, goal: Mapping[str, np.ndarray]) 
 
 @dataclass(frozen=True, slots=True, repr=False, kw_only=True)
 class Conversion(Brief):
-    """A converted file, of either formula, and how near it comes to the other one."""
+    """A converted file, of either formula, and its misfit to the other one."""
 
     path: Path  #: the file that was converted
     problems: tuple[Problem, ...]  #: of either formula

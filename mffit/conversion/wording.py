@@ -74,13 +74,13 @@ def worst(misfit: Iterable[RegionMisfit]) -> str:
 
 
 def size(row: RegionMisfit) -> str:
-    """The largest misfit of a region, beside the largest value at its load."""
+    """The largest misfit of a region, and the largest value at its load."""
     unit = MODEL[row.channel].unit
     return f"{row.largest:.3g} of {row.greatest_force:.3g} {unit} ({row.share:.1%}) at {row.load:.0f} N"
 
 
 def trusted(found: Conversion) -> bool:
-    """Whether there is no reason against a conversion."""
+    """Whether a conversion is usable: no reason speaks against it."""
     return not reasons(found)
 
 

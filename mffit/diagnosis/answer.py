@@ -247,7 +247,7 @@ def _lead(chosen: Hypothesis, rival: Hypothesis, tied: bool) -> float:
 def not_accepted(found: Explanation) -> dict[str, float]:
     """Weights of the effects that explain something and were not accepted, the largest of all places.
 
-    A place is left out if left-out sweeps decided otherwise than the evidence.
+    A place is left out if the decision came from left-out sweeps instead of the evidence.
     """
     chosen, out = found.chosen, dict[str, float]()
     assert found.further is not None

@@ -78,7 +78,7 @@ def diagnose(
 def _notes(
     search: Search, found: Explanation, wrong: Misread | None, done: Repair, refused: NoRepair | None
 ) -> list[DiagnosisNote]:
-    """Everything that the reader of a diagnosis has to know beside its effects."""
+    """What the reader of a diagnosis must know in addition to its effects."""
     remarks = (
         *(TakenOff(sentence) for sentence in search.asked.taken_off),
         wrong,

@@ -27,7 +27,7 @@ from mffit.scatter import rms
 def explain(search: Search) -> Explanation:
     """The explanation of the readings.
 
-    If the model was fitted to these points, model error remains as smooth structure, which is no evidence against an effect.
+    If the model was fitted to these points, model error remains as smooth structure, which does not count against an effect.
     """
     seen = search.asked.seen
     found = _of_fitted_model(search) if seen else _of_given_model(search)

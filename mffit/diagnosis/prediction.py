@@ -112,7 +112,7 @@ def judged(
 ) -> Judged:
     """The support of a chosen effect, from a comparison with its absence and with rivals in its place.
 
-    Every channel has its own formulae, so misfit in one channel is no evidence against an effect on another. A rival is tied only
+    Every channel has its own formulae, so misfit in one channel does not count against an effect on another. A rival is tied only
     if it is not significantly worse both in total and in the channel that the effect explains most.
     """
     without, present = prediction.without(chosen, effect), prediction.of(chosen)

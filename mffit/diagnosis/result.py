@@ -155,7 +155,7 @@ class Diagnosis(ReadOnlyArrays, Brief):
 
     @property
     def trusted(self) -> bool:
-        """Whether there is no reason against relying on the corrected model."""
+        """Whether the corrected model is to be trusted: no rule found a reason against it."""
         return not self.reasons
 
     @property

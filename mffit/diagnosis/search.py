@@ -23,7 +23,7 @@ from tir import Tyre
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Asked:
-    """What a diagnosis is asked, and what is known beside points, model and project."""
+    """The question of a diagnosis, and what is known in addition to points, model and project."""
 
     rig: Mapping[str, float] | None = None
     """Known rig errors, of the rig or of a set-up; None: the declared play alone."""
@@ -52,7 +52,7 @@ class Search:
     start: Simulation  #: the given model
     stated: Noise
     candidates: tuple[Effect, ...]
-    hidden: tuple[NotVisible | OneSweep, ...]  #: why the other effects are no candidates
+    hidden: tuple[NotVisible | OneSweep, ...]  #: why the other effects are not candidates
     inexact: Inexactness
     declared: Mapping[str, tuple[float, float]]
     """Value and standard uncertainty of each declared rig error."""

@@ -29,7 +29,7 @@ class Member:
     effect: Effect
     columns: slice
     numbers: tuple[FreeNumber, ...]
-    """Its numbers with their priors, of which the columns are changes by one standard deviation; none for a switch."""
+    """Its numbers with their priors; the columns are changes by one standard deviation of these. None for a switch."""
 
 
 Members = tuple[int, ...]

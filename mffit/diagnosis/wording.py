@@ -74,7 +74,7 @@ def verdict(diagnosis: Diagnosis) -> str:
 def reasons(diagnosis: Diagnosis) -> tuple[str, ...]:
     """Why the corrected model is not to be trusted, without full stop; empty if it is.
 
-    What a formula misses of the points of its own fit is stated by the build, and is no reason.
+    The build states what a formula misses of the points of its own fit; that is not a reason.
     """
     if diagnosis.seen or not diagnosis.unexplained:
         return ()

@@ -111,7 +111,7 @@ def _force(tyre: tir.Tyre, channel: str, on: bool) -> Function:
 def _tables(
     tyre: tir.Tyre, on: bool, inside: Ranges, error: float, progress: Progress
 ) -> tuple[list[LookupTable], list[str]]:
-    """The tables of a tyre, and sentences on those that miss the goal or are left out; they end at one that is no number."""
+    """The tables of a tyre, and sentences on those that miss the goal or are left out; they end at one that is not a number."""
     tables: list[LookupTable] = []
     warnings = []
     wanted = [*PURE.items(), *COMBINED.items()]

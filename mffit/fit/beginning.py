@@ -65,7 +65,7 @@ def begin(config: Config, points: Points, measured: Measured, base: Tyre | None)
 
 
 def sketch(config: Config, points: Points, measured: Measured, base: Tyre | None) -> FitResult:
-    """The first of the fits of a build alone: no influences beside coefficients and declared rig errors, no written files, no
+    """The first of the fits of a build alone: no influences other than coefficients and declared rig errors, no written files, no
     judgement. It takes a second and serves to plan runs; raises as :func:`mffit.fit.fit`.
     """
     begun = begin(config, points, measured, base)

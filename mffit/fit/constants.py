@@ -74,7 +74,7 @@ ROLLING_SPREADS = Series(
     "0.0004 and more, QSY7 of 0.85 to 1 and QSY8 of -0.4 to 0.",
 )
 
-# Estimates of what nobody measured
+# Estimates of what was not measured
 SLIP_OVER_CORNERING_STIFFNESS = Real(
     1.3,
     "-",

@@ -40,7 +40,7 @@ class Fitted:
     left: float  #: predicted decrease of the sum of squares by one more step: 0 at the minimum
     hand: Hand = NO_HAND  #: entries of [coefficients]
     u_at_bound: Mapping[str, float] = field(default_factory=dict)
-    """Standard uncertainty that numbers at their own bound would have beside it; the others are uncertain with these fixed."""
+    """Standard uncertainty that numbers at a bound would have off it; that of the others holds with these fixed."""
 
     @property
     def simulation(self) -> Simulation:

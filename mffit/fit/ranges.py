@@ -168,7 +168,7 @@ def _worst_violation(model: Any, ranges: Mapping[str, float]) -> float:
 def _as_tested(model: Any, ranges: Mapping[str, float], name: str, tested: Mapping[str, float]) -> bool:
     """Whether grip and stiffness over load follow their slope over the tested loads or pressures up to the range's end ``name``.
 
-    A polynomial follows the tested conditions and may turn away beside them. What changes less than by the slope is no cliff.
+    A polynomial follows the tested conditions and may turn away outside them. A change smaller than by the slope is not a cliff.
     """
     key = name[:-3]
     if {"FZ": single_load, "PRES": single_pressure}.get(key, lambda _: True)(tested):

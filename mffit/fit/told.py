@@ -1,4 +1,4 @@
-"""What each sweep tells of the numbers of a fit, and the uncertainty that follows for a campaign that would be run again."""
+"""Information of each sweep about the numbers of a fit, and the uncertainty for a campaign that is run again."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ROUNDING = 1e-12
 
 
 class Told(NamedTuple):
-    """What the readings of one sweep tell of numbers (k,), with the weights of the fit."""
+    """Information of the readings of one sweep about numbers (k,), with the weights of the fit."""
 
     information: np.ndarray  #: (k, k) derivative of the score
     scatter: np.ndarray  #: (k, k) covariance of the score, from noise and from what the run has of its own
@@ -120,7 +120,7 @@ class _Readings(NamedTuple):
     residual: np.ndarray  #: (n,) measured less model
 
     def told(self, rows: np.ndarray, stride: int) -> Told:
-        """What some of the readings tell, each of which stands for ``stride`` readings."""
+        """Information of some of the readings, each of which represents ``stride`` readings."""
         slopes = self.slopes[rows]
         noisy, own = slopes * self.noise[rows, None], stride * slopes.T @ self.own[rows]
         return Told(
@@ -164,7 +164,7 @@ def numbers_told(told: Sequence[Told], priors: Priors) -> Numbers:
     would pull it elsewhere around the best that the formula can do. How far, the pulls of the present sweeps tell, each sweep
     left out in turn (the jackknife over clusters, to first order). Together, with H the curvature of the fit and D the
     covariance by the jackknife: C = H^-1 (scatter + priors) H^-1 + D. The information returned is C^-1 without the priors, which
-    held numbers do not have here; where C exceeds a prior, the readings tell nothing.
+    held numbers do not have here; where C exceeds a prior, the readings have no information.
     """
     held = np.array([name in priors.held for name in priors.names], dtype=bool)
     precision = np.where(held, np.inf, priors.spread) ** -2.0

@@ -94,7 +94,7 @@ class Specimen:
 
 
 def freed(numbers: Numbers) -> Numbers | None:
-    """The numbers of a build, also the coefficients that it held; None if its readings tell nothing.
+    """The numbers of a build, also the coefficients that it held; None if its readings contain no information.
 
     A held number of the rig, or one of which they tell nothing, is left out. Effects of the tyre that are not coefficients
     are left to readings and priors, as they are estimated anew in every build.

@@ -277,7 +277,7 @@ class MeasuredFacts(NamedTuple):
 
 
 class SpinStatement(NamedTuple):
-    """What ``mffit spin`` states beside the measurements."""
+    """What ``mffit spin`` states in addition to the measurements."""
 
     reasons: tuple[str, ...] = ()  #: reasons against trust
     warnings: tuple[str, ...] = ()
@@ -313,7 +313,7 @@ class Measured(Brief):
 
     @property
     def trusted(self) -> bool:
-        """Whether there is no reason against trusting the result."""
+        """Whether no rule found a reason against the result."""
         return not self.reasons
 
     @property
@@ -412,7 +412,7 @@ class Measured(Brief):
         return out
 
 
-# SI units, ISO signs, k = 1. The judgement stands at the top of ``spin.json`` and of ``result.json``.
+# SI units, ISO signs, k = 1. The judgement is at the top of ``spin.json`` and of ``result.json``.
 keys(
     Measured,
     "**judged **at_nominal ±epsilon_gamma=epsilon_of_file ±epsilon_gamma_direct=epsilon_gamma epsilon_gamma_source "

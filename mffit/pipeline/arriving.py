@@ -68,7 +68,7 @@ class ArrivingFiles:
     def _read(self, path: Path, config: Config, entry: SweepTable | None) -> Arrived | None:
         """A file that is complete, or that stays unreadable; None while it is being written."""
         signature, looks = self._seen[path]
-        is_final = looks >= LOOKS_OF_PATIENCE  # it has been the same for so long that nobody writes it
+        is_final = looks >= LOOKS_OF_PATIENCE  # it has not changed for so long that it is complete
         if not looks or (not is_final and is_cut_off(file_of(path))):
             return None
         try:

@@ -230,7 +230,7 @@ class Prospect:
         return [name for name in self._new_zeros if name.partition(OF_RUN)[2] in used]
 
     def _told_by(self, run: PlannedRun) -> Told:
-        """What a run is expected to tell; one of a new set-up has its own zeros instead of the common ones."""
+        """Expected information of a run; one of a new set-up has its own zeros instead of the common ones."""
         if run.name not in self._of_run:
             sigma = {channel: self._sigma[channel] for channel in self._channels_of(run)}
             still = [e.name for e in ZEROS if e.name in self.rig] if self._new_of([run]) else []

@@ -29,7 +29,7 @@ CORE = Series(
     (5.0, 95.0), "%", "Percentiles between which a setting's range is taken; ignores single values."
 )
 
-# Samples that are no measurement
+# Samples that are not measurements
 UNLOADED = Real(0.1, "-", "Share of the usual load below which the tyre is off the belt.")
 SPIKE = Real(0.15, "-", "Smallest spike of a force over the usual load.")
 HARMLESS_DRIFT = Real(0.02, "-", "Drift of a force within a stretch, over the load, that is averaged.")

@@ -13,7 +13,7 @@ from mffit.quantities import CHANNELS
 from mffit.scatter import EFFICIENCY
 
 MAY_BE_SILENT = ("Mx", "Mz")
-"""Moments that a result can do without, and that a zero of the load cell shifts: a constant reading is no signal."""
+"""Moments that a result can do without, and that a zero of the load cell shifts: a constant reading is not a signal."""
 
 
 def without_silent_moments(points: Points) -> tuple[Points, tuple[str, ...]]:

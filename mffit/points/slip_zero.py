@@ -293,7 +293,7 @@ def _stated(config: Config) -> dict[str, _Stated]:
 
 
 def _with(sweep: Sweep, kappa: np.ndarray) -> Sweep:
-    """The sweep with another slip, which its table shows beside the one as read."""
+    """The sweep with another slip, which its table shows next to the one as read."""
     return replace(sweep, kappa=kappa, table=sweep.table.assign(kappa_free_rolling=kappa))
 
 
@@ -420,7 +420,7 @@ def readings_of(rows: MeasuredRows) -> Driven:
 def _conditions(of: Driven, middle: Driven) -> np.ndarray:
     """Columns (n, k) of a linear model of the zero: load, pressure, camber and sideslip to second order, squared speed.
 
-    The speed term stands for the growth of the free radius with the square of the speed.
+    The speed term is the growth of the free radius with the square of the speed.
     """
     load, camber = np.abs(of.Fz) / middle.Fz - 1.0, np.abs(of.gamma)
     nothing = np.zeros(len(load))

@@ -265,7 +265,7 @@ def _swept(
 
 
 def _lasts(settings: SteadySettings, smooth: np.ndarray, begin: int, end: int) -> bool:
-    """Whether a movement is no move to another set-point: it lasts, or turns back and is long enough for the forces to follow.
+    """Whether a movement is more than a move to another set-point: it lasts, or turns back long enough for forces to follow.
 
     A rig goes to its next set-point at once, but by the shortest way.
     """

@@ -299,7 +299,7 @@ class Predictor:
 
 
 def _mixed(each: Sequence[PredictedForce]) -> PredictedForce:
-    """The prediction where one of several conditions holds, none of which is stated."""
+    """The prediction for an unstated condition that is one of several."""
     best = np.array([one.best for one in each])
     variance, of_run, of_setup = (
         np.mean([getattr(one, name) for one in each], axis=0) for name in ("variance", "of_run", "of_setup")

@@ -49,7 +49,7 @@ ANGLE = re.compile(r"deg|rad|°")
 
 
 def is_of_kind(unit: str, channel: Channel) -> bool:
-    """Whether readings in a unit can be converted to that of a channel; a share is no angle, and no angle a share."""
+    """Whether readings in a unit can be converted to that of a channel; a ratio and an angle cannot."""
     try:
         converted(np.zeros(1), unit, channel.unit)
     except UnknownUnitError:

@@ -62,6 +62,6 @@ def _both_ways(points: Points, path: Path) -> bool:
 
 
 def files_of_folder(folder: Path) -> Sequence[Path]:
-    """The recordings in a folder, sorted by name; those that begin with . or ~$ are what programs put beside an open file."""
+    """The recordings in a folder, sorted by name, without those that programs put next to an open file (. or ~$)."""
     inside = (p for p in folder.iterdir() if not p.name.startswith((".", "~$")) and p.is_file())
     return sorted(path for path in inside if path.name.lower().endswith(formats.ENDINGS))

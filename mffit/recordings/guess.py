@@ -193,7 +193,7 @@ def candidates(
 
 
 def _called_slip(raw: RawTable) -> list[FoundChannel]:
-    """Columns with the word slip in their heading that are no angle; which one is the slip, the forces decide."""
+    """Columns with the word slip in their heading that are not angles; the forces decide which one is the slip."""
     headings = [
         heading for heading in raw.headings if OF_SLIP.search(heading) and not OF_ANGLE.search(heading)
     ]
@@ -202,7 +202,7 @@ def _called_slip(raw: RawTable) -> list[FoundChannel]:
 
 
 def _known_headings(raw: RawTable, channel: Channel, others: Collection[str]) -> list[str]:
-    """The headings with a known name of a channel that are none of the ``others``, in the order of the names.
+    """The headings with a known name of a channel that are not among the ``others``, in the order of the names.
 
     A name with its unit, such as ``Camber / deg``, is known, too.
     """

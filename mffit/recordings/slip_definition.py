@@ -151,7 +151,7 @@ def _judged(
 
 
 def _is_plain(unit: str) -> bool:
-    """Whether a column has no unit, or one that stands for a plain number."""
+    """Whether a column has no unit, or that of a plain number."""
     return not unit or float(converted(np.ones(1), unit, "")[0]) == 1.0
 
 

@@ -39,7 +39,7 @@ from mffit.sweeps import formats
 from tir.conventions import FLIPPED
 
 REVERSIBLE = ("Fz_N", "alpha_deg", "gamma_deg", "Fy_N", "Mz_Nm")
-"""Columns of which a single one may have the sign of other axes."""
+"""Columns one of which may have the sign of other axes."""
 
 
 class Level(NamedTuple):
@@ -307,7 +307,7 @@ def axes_reason(sniffed: Sniffed) -> str:
 
 
 def _undecided(sniffed: Sniffed) -> list[str]:
-    """Why a slope that would decide between axes is unknown: its angle stands still, or the force does not follow it."""
+    """Why a slope that would decide between axes is unknown: its angle does not move, or the force does not follow it."""
     angles = {
         "cornering": (levels.SIDESLIP, sniffed.points.alpha),
         "camber": (levels.CAMBER, sniffed.points.gamma),

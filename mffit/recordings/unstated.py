@@ -281,7 +281,7 @@ def _american(known: _Known) -> tuple[dict[str, Choice], list[str]]:
     """American units for the columns without a stated unit, and a remark if these units are possible but not certain.
 
     They are certain if some column can only be in an American unit and no stated unit or pressure is in another one. A
-    pressure in psi is no such column, because rigs in Europe have gauges in psi, too.
+    pressure in psi does not count, because rigs in Europe have gauges in psi, too.
     """
     found, chosen, _ = known
     of_file = [column for column in found.values() if column.unit and not column.given]

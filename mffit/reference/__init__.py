@@ -18,7 +18,7 @@ from mffit.templates import environment
 from tir.constant import Count, Real, Series
 
 WRITTEN = ("effects.md", "rig-errors.md", "suspicion.md")
-"""Pages that stand in ``docs``; the build of the site adds the tables of ``constants.md``."""
+"""Generated pages in ``docs``; the build of the site adds the tables of ``constants.md``."""
 
 
 def page(name: str) -> str:
@@ -49,7 +49,7 @@ def _constants() -> Iterator[tuple[str, dict[str, Real | Count | Series]]]:
 
 
 def pages() -> dict[str, str]:
-    """Text of every page that stands in ``docs`` by its name."""
+    """Text of every generated page in ``docs`` by its name."""
     return {name: page(name) for name in WRITTEN}
 
 

@@ -28,7 +28,7 @@ class PagePicture:
     name: str  #: file stem of its PNG
     drawing: str  #: its panels as HTML
     table: str  #: the numbers behind it, CSV
-    remark: str  #: what the caption says of these data only
+    remark: str  #: part of the caption for these data only
 
     @property
     def link(self) -> str:

@@ -1,4 +1,4 @@
-"""How all pictures look: matplotlib's settings, and colours that any colour vision and grey print tell apart."""
+"""How all pictures look: matplotlib's settings, and colours that differ for any colour vision and in grey print."""
 
 from __future__ import annotations
 

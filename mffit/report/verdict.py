@@ -32,7 +32,7 @@ class Headline(NamedTuple):
     name: str
     value: str
     note: str
-    reached: str = ""  #: where a largest force that is no peak was reached
+    reached: str = ""  #: where a largest force that is not a peak was reached
 
 
 def judgement(result: BuildResult) -> str:

@@ -173,7 +173,7 @@ class BuildOutcome:
 
     @property
     def trusted(self) -> bool:
-        """Whether the output is complete and there is no reason against the result."""
+        """Whether the output is complete and no rule found a reason against the result."""
         return self.whole and not self.reasons
 
 

@@ -17,7 +17,7 @@ CLOCK = re.compile(
 )
 """A time of day or an elapsed time; of two numbers with a fraction, the first are the minutes."""
 DATE = re.compile(r"$|.*\d.*[T ,]$")
-"""What may stand before a clock time."""
+"""What may precede a clock time."""
 
 
 class _ClockTime(NamedTuple):
@@ -39,7 +39,7 @@ def with_clock_times(raw: RawTable) -> RawTable:
 
 
 def _seconds(cells: Cells) -> np.ndarray | None:
-    """Seconds (n,), NaN where a cell is empty; None if the cells are no clock times, or all one."""
+    """Seconds (n,), NaN where a cell is empty; None if the cells are not clock times, or all equal."""
     filled = [(row, str(cell)) for row, cell in enumerate(cells) if str(cell).lower() not in NO_READING]
     found: list[_ClockTime] = []
     for _, cell in filled:

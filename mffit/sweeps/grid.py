@@ -44,7 +44,7 @@ def ragged(count: int, width: int, path: Path, line: int) -> InputError:
 def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:
     """Headings and units in the first rows of a table, none of them empty, whose cells are stripped of blanks.
 
-    Headings may stand in two rows, where cells were merged: an upper cell names a column by itself, or the group of those below.
+    Headings may be in two rows, where cells were merged: an upper cell names a column by itself, or the group of those below.
     A column without a heading has an empty one here.
     """
     if not rows:
@@ -101,9 +101,9 @@ def _fills_gaps(row: Row, other: Row) -> bool:
 
 
 def _headings_of(groups: Row, row: Row) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Headings and units: those of the row, or of its groups where it has none; groups of equal headings tell them apart."""
+    """Headings and units: those of the row, or of its groups where it has none; groups distinguish equal headings."""
     width = max(_width(groups), _width(row))
-    group, of_group = ("", ""), sum(cell != "" for cell in groups) > 1  # a title is no group
+    group, of_group = ("", ""), sum(cell != "" for cell in groups) > 1  # a title is not a group
     found = []
     for above, own in zip(_with_units(groups, width), _with_units(row, width), strict=True):
         group = above if above[0] else group

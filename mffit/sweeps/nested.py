@@ -15,7 +15,7 @@ from mffit.sweeps.raw_table import Cells
 from mffit.sweeps.wide import RUN
 
 UNIT = ("unit", "units", "Unit", "Units")
-"""Names of the text beside a vector that is its unit."""
+"""Names of a text next to a vector that states its unit."""
 
 
 class Content(NamedTuple):

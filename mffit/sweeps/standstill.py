@@ -8,7 +8,7 @@ from mffit.sweeps import constants
 
 
 def standing(V: np.ndarray) -> np.ndarray:
-    """Mask (n,) of the samples at which the road stands, from its speed in any unit and with any sign; NaN is no standstill.
+    """Mask (n,) of the samples at which the road stands, from its speed in any unit and with any sign; NaN is not a standstill.
 
     The usual speed is that of the rolling wheel, so a recording may stand for most of its time.
     """

@@ -70,7 +70,7 @@ def with_load_of_names(raw: RawTable) -> RawTable:
 
 
 def stacked(columns: Mapping[str, Cells]) -> Stacked | None:
-    """One set of columns below the other; None if the numbers in the names are no loads.
+    """One set of columns below the other; None if the numbers in the names are not loads.
 
     They are loads if every set has a side force and the same channels, and the load of the sets, else the peak of the side
     force, is in proportion to them; numbers of wheels or sensors are not.

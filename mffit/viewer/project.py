@@ -63,7 +63,7 @@ def project_data(result: BuildResult) -> dict[str, Json]:
 
 
 def _of_fit(result: BuildResult) -> dict[str, object]:
-    """What the page shows of a fit beside its points."""
+    """What the page shows of a fit in addition to its points."""
     fitted = result.fit
     simulation, misfits = fitted.simulation, _misfits(result)
     switches = Switches(simulation.turn_slip, simulation.star)
@@ -150,7 +150,7 @@ def _computed(data: dict[str, Json] | None) -> list[str]:
 def _misfits(result: BuildResult) -> dict[str, float]:
     """By channel that was measured and that the page computes, rms misfit of the fitted model.
 
-    Some, such as the wheel speed, are fitted by themselves, from the freely rolling wheel only, and are no channel of the fit;
+    Some, such as the wheel speed, are fitted by themselves, from the freely rolling wheel only, and are not channels of the fit;
     so is the loaded radius, which has a curve where the file's terms of the radius were fitted.
     """
     fitted = result.fit

@@ -19,7 +19,7 @@ from mffit.viewer.packing import packed, rounded
 from tir.codegen.program import INPUTS
 
 MEASURED_ONLY = {"T": CONDITIONS["T_degC"], "t": CONDITIONS["t_s"]}
-"""Conditions of points that are no input of the model."""
+"""Conditions of points that are not inputs of the model."""
 FACETS = {name: levels.KINDS[MODEL[name].word] for name in INPUTS if MODEL[name].word in levels.KINDS}
 """Inputs of the model whose set-points have levels."""
 BITS_OF_BANDS = 12
@@ -27,7 +27,7 @@ BITS_OF_BANDS = 12
 
 
 def axis_quantities() -> dict[str, QuantityName]:
-    """Everything that an axis of the page can show, beside residuals."""
+    """Everything that an axis of the page can show, except residuals."""
     return {name: MODEL[name] for name in INPUTS} | MEASURED_ONLY | dict(CHANNELS)
 
 
@@ -78,7 +78,7 @@ def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[
 def differing(
     points: Points, excluded: Points | None, fitted: FitResult, other: FitResult
 ) -> dict[str, object]:
-    """Those of the :func:`columns` that another fit has otherwise than ``fitted``, packed."""
+    """Those of the :func:`columns` that differ between another fit and ``fitted``, packed."""
     known, found = (_felt(*_read_and_felt(points, excluded, one)) for one in (fitted, other))
     found |= {name: np.zeros_like(column) for name, column in known.items() if name not in found}
     return dict(
@@ -150,7 +150,7 @@ def _shown(points: Points) -> dict[str, np.ndarray]:
 
 
 def _differ(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether a page, which has single floats, tells two columns apart."""
+    """Whether two columns differ in a page, which has single floats."""
     return not np.array_equal(one.astype(np.float32), other.astype(np.float32), equal_nan=True)
 
 

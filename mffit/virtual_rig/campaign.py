@@ -191,7 +191,7 @@ def configuration_of(plan: RigPlan, machine: Machine, generator: np.random.Gener
     if plan.reports_slip and against != "free-rolling":
         content["columns"] = {**content.get("columns", {}), "kappa": {"against": against}}
     if plan.declared.base_path is not None:
-        content["tyre"]["base"] = plan.declared.base_path.name  # its copy is beside tyre.toml
+        content["tyre"]["base"] = plan.declared.base_path.name  # its copy is next to tyre.toml
     if plan.declared.priors_path is not None:
         content["tyre"]["priors"] = str(plan.declared.priors_path.absolute())
     # TOML requires plain keys before tables. The many sweeps come last; empty tables are left out.

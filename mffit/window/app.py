@@ -160,7 +160,7 @@ class Answers:
         return FileResponse(found, headers={"content-security-policy": SANDBOX})
 
     async def gone(self, request: Request, error: Exception) -> Response:
-        return Response(status_code=400)  # nobody reads it
+        return Response(status_code=400)  # no reader
 
     async def refused(self, request: Request, error: Exception) -> Response:
         """The sentence why something was refused."""

@@ -173,7 +173,7 @@ def _exclude(document: Any) -> Any:
 
 
 def _by_file(readings: Iterable[Mapping[str, Any]]) -> dict[str, Sequence[LineRange]]:
-    """Lines by file. Raises InputError if a reading lacks one of them, or its lines are no list of lines."""
+    """Lines by file. Raises InputError if a reading lacks one of them, or its lines are not a list of lines."""
     found: dict[str, list[str]] = {}
     for reading in readings:
         try:

@@ -176,7 +176,7 @@ class RecordingsFolder:
         return project_of(found, self.folder, stated)
 
     def _chosen_files(self, choice: Mapping[str, Any]) -> dict[Path, ChosenFile]:
-        """The files that are used, with what the page says of them; only files of this folder."""
+        """The files that are used, with the user's statements; only files of this folder."""
         known = {path.name: path for path in self._parted()[0]}
         return {
             known[file["name"]]: _chosen(known[file["name"]], group["columns"], bool(file.get("backward")))
@@ -186,7 +186,7 @@ class RecordingsFolder:
         }
 
     def _stated(self, tyre: Mapping[str, Any], rig: Mapping[str, Any], files: Sequence[str]) -> Stated:
-        """What the page says of tyre and rig, checked as that of a ``tyre.toml``."""
+        """The user's statements about tyre and rig, checked like a ``tyre.toml``."""
         given, of_rig = ({k: v for k, v in table.items() if v not in (None, "")} for table in (tyre, rig))
         if of_rig.get("type") == "flat-track":
             of_rig = {k: v for k, v in of_rig.items() if not k.startswith("path")}
@@ -248,7 +248,7 @@ def _offered(heading: str, guessed: Mapping[str, Guess]) -> ColumnChoice:
 
 
 def _chosen(path: Path, rows: Sequence[Mapping[str, Any]], backward: bool) -> ChosenFile:
-    """What the page says of a recording that differs from what it offered."""
+    """What the user states about a recording, as far as it differs from the recognised values."""
     raw = formats.read(path)
     guessed = {guess.heading: guess for guess in guesses(raw).found.values()}
     chosen, taken = [], set()

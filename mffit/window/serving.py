@@ -110,7 +110,7 @@ def _leading_to(address: str, port: int) -> Iterator[Path | None]:
 
 
 def _listening(port: int) -> socket.socket:
-    """A socket on the loopback address; no other process can listen there beside it."""
+    """A socket on the loopback address; no other process can listen there too."""
     found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     if os.name == "nt":
         found.setsockopt(socket.SOL_SOCKET, socket.SO_EXCLUSIVEADDRUSE, 1)  # type: ignore[attr-defined]

@@ -142,7 +142,7 @@ class ProjectFile:
         return checked(tables, path=self.path, folder=self.path.parent, lines=lines)
 
     def _refusal(self, content: bytes) -> InputError | None:
-        """Why a build refuses a content, or the files and lines that it names beside the recordings; None if it does not."""
+        """Why a build refuses a content, or the files and lines that it names except recordings; None if it does not."""
         try:
             config = self._checked(content)
             check_named_files(config)
@@ -203,7 +203,7 @@ class Session:
         self._lock = threading.Lock()
 
     def state(self) -> dict[str, Any]:
-        """What the page must know beside the data of the fit, as JSON."""
+        """What the page must know in addition to the data of the fit, as JSON."""
         with self._lock:
             self._collect()
             now = self.file.digest
@@ -241,7 +241,7 @@ class Session:
                 raise InputError(f"{name} cannot be done with {', '.join(arguments) or 'nothing'}") from None
 
     def settings(self) -> list[dict[str, Any]]:
-        """What can be set beside coefficients, as in :func:`mffit.window.settings.settings`."""
+        """What can be set in addition to coefficients, as in :func:`mffit.window.settings.settings`."""
         return settings(self.file.tables())
 
     def undo(self) -> None:
@@ -269,7 +269,7 @@ class Session:
                 run.stop()
 
     def _there(self) -> dict[Path, int]:
-        """Time of every recording beside tyre.toml [ns]."""
+        """Time of every recording next to tyre.toml [ns]."""
         found = {}
         with contextlib.suppress(OSError):  # gone in between
             for path in files_of_folder(self.file.path.parent):

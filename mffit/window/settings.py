@@ -1,4 +1,4 @@
-"""What can be set in ``tyre.toml`` beside coefficients: every key of its tables that is one value, read off the models."""
+"""Settings of ``tyre.toml`` other than coefficients: every key of its tables that is one value, read off the models."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def toml(value: Any) -> str:
 
 
 def value_of(text: str) -> Any:
-    """The value that a text in the notation of TOML means; words that are none are a text."""
+    """Parse a TOML value; text that is not valid TOML is returned as a string."""
     try:
         (value,) = tomlkit.parse(f"x = {text}").values()
     except ValueError:

@@ -61,7 +61,7 @@ def fit_with_nuisances(
 def _with_influences(
     config: Config, problem: FitProblem, plan: FitPlan, fitted: Fitted, progress: Progress
 ) -> NuisanceFit:
-    """The fit with the influences that are chosen, beside the ``fitted`` one without them."""
+    """The fit with the chosen influences, and the ``fitted`` one without them."""
     choice = choose(config, fitted)
     if choice.modelled:
         progress(f"{FITTING_AGAIN} {', '.join(nuisance.name for nuisance in choice.modelled)}")

@@ -111,7 +111,7 @@ def rolling_resistance(
     information = end.jacobian.T @ end.jacobian / scale**2 + np.diag(end.prior)
     covariance = inverse(information)
     stderr = dict(zip(end.names, np.sqrt(np.diag(covariance)).tolist(), strict=True))
-    scaled = np.array([0.0 if n in BOUNDS else end.values[n] for n in names])  # exponents are no factors
+    scaled = np.array([0.0 if n in BOUNDS else end.values[n] for n in names])  # exponents are not factors
     of_gain = u_gain**2 * np.outer(scaled, scaled)
     of_prior = {n.name for n in numbers if stderr[n.name] > constants.FITTED_SHARE_OF_PRIOR * n.spread}
     return Resistance(

@@ -35,7 +35,7 @@ SCALE = (14.0, 17.0, 180.0, 7.0)
 NO_FORMULA = re.compile(r"\$(?!_\{\w+\}\$)(?<!\}\$)")
 """A dollar sign that does not belong to a subscript such as that of ``QuantityName.mathtext``."""
 COLOURS = 128
-"""Of a PNG: a third of the bytes, and nobody sees a difference."""
+"""Colours of a PNG: a third of the bytes without a visible difference."""
 
 
 class Drawing(NamedTuple):
@@ -125,7 +125,7 @@ def _size_of_panel(sheet: Sheet) -> tuple[float, float]:
 
 
 def _columns_of_key(sheet: Sheet) -> int:
-    """Columns in which the key is no wider than a telephone shows."""
+    """Largest number of columns of the key that fit a telephone."""
     longest = max(map(len, sheet.key), default=1)
     return max(1, int(0.5 * style.WIDTH / (style.LETTER * (longest + 6))))
 

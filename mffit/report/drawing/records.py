@@ -118,7 +118,7 @@ def listed(words: Sequence[str]) -> Axis:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Panel:
-    """One diagram, readable by itself."""
+    """One diagram."""
 
     title: str = ""
     x: Axis = Axis()

@@ -84,7 +84,7 @@ def _files(recordings: Sequence[SniffedRecording]) -> str:
 
 
 def _use(heading: str, recordings: Sequence[SniffedRecording]) -> str:
-    """What a column is read for that is no channel."""
+    """Use of a column that is not a channel."""
     stated = (key for r in recordings for key, one in r.tyre.items() if one.heading == heading)
     return next(stated, "name of the tyre" if names_tyre(heading) else "not used")
 
