@@ -222,7 +222,7 @@ def _prepared(
     outputs: tuple[str, ...],
     made: Callable[[dict[str, float]], Made],
 ) -> Made | None:
-    """What is made of the parameters as floats, cached in the tyre; None if one is not a real number."""
+    """A function prepared from the parameters as floats, cached in the tyre; None if one is not a real number."""
     if key not in tyre.prepared:
         values = _values(tyre, switches, outputs)
         tyre.prepared[key] = None if values is None else made(values)

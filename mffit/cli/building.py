@@ -80,7 +80,7 @@ def _build(
     strict: bool,
     **asked: Any,
 ) -> None:
-    """Build one tyre; what is ``asked`` for besides goes to :func:`mffit.pipeline.build`."""
+    """Build one tyre; further options in ``asked`` go to :func:`mffit.pipeline.build`."""
     from mffit import config, pipeline
     from mffit.report import text
 
@@ -136,7 +136,7 @@ def _build_many(
     strict: bool,
     **asked: Any,
 ) -> None:
-    """Build several tyres; what is ``asked`` for besides goes to :func:`mffit.pipeline.build_many`."""
+    """Build several tyres; further options in ``asked`` go to :func:`mffit.pipeline.build_many`."""
     from mffit import pipeline
     from mffit.report import text
 

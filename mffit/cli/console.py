@@ -62,7 +62,7 @@ class Voice:
             self.say(f"written to {out}: {', '.join(files)}")
 
     def give(self, content: object) -> None:
-        """Print a record, or what is made of some, for programs if ``--json`` asks for it."""
+        """Print a record, or JSON made from records, if ``--json`` asks for it."""
         if self.json:
             from mffit import as_json
 

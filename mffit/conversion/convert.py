@@ -35,7 +35,7 @@ STRUCTURE = ("LONGITUDINAL_STIFFNESS", "LATERAL_STIFFNESS", "PCFX1", "PCFX2", "P
 READERS = ("chrono", "pac2002")
 """Programs of :data:`tir.targets.TARGETS` that read old files and no others."""
 STATED = ("PROPERTY_FILE_FORMAT", "USE_MODE")
-"""Keys of [MODEL] that such a program goes by, and that a conversion replaces."""
+"""Keys of [MODEL] that such a program evaluates, and that a conversion replaces."""
 
 
 def convert(

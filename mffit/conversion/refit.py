@@ -91,7 +91,7 @@ FREE: Mapping[str, Sequence[str]] = {"Fx": (), "Fy": CAMBER_FORCE, "Mz": CAMBER_
 """By channel, what is fitted in every file: the coefficients of camber. All others mean the same in both formulae, so that the
 upright wheel keeps its forces."""
 UNBOUNDED = (-np.inf, np.inf)
-"""Of a converted coefficient: exact forces determine it, and what it multiplies may be tiny in the old file."""
+"""Bound of a converted coefficient: exact forces determine it, and its factor may be tiny in the old file."""
 
 
 class Fit(NamedTuple):

@@ -19,7 +19,7 @@ REVERSED = (
 
 
 def headline(found: Conversion) -> str:
-    """What was made of what, and over which ranges."""
+    """The old and the new formula, and the ranges of the fit."""
     reach = found.reach
     over = (
         f"over {reach.Fz[0]:.0f} to {reach.Fz[1]:.0f} N, sideslip to {math.degrees(reach.alpha):.3g} deg, camber to "

@@ -69,7 +69,7 @@ class _Watch:
     def __init__(self, path: Path) -> None:
         self.path, self.config = path, configuration.load(path, awaiting=True)
         self.arriving = ArrivingFiles()
-        self._shown: object = None  #: what the last campaign was made of
+        self._shown: object = None  #: the inputs of the last campaign
         self._last = NOTHING_YET
         self._states: dict[str, tuple[object, ...]] = {}  #: of its files, by their names
         self._said: set[str] = set()  #: its warnings, without their numbers

@@ -1,4 +1,4 @@
-"""What a user wants to know of a build first: whether to trust it, its main numbers, and which file is for whom."""
+"""The first facts about a build: whether to trust it, its main numbers, and which file is for which use."""
 
 from __future__ import annotations
 

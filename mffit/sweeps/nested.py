@@ -84,7 +84,7 @@ def _runs(vectors: Mapping[tuple[str, ...], np.ndarray]) -> dict[str, Cells]:
 
 
 def without_columns(others: Mapping[str, Mapping[str, Any]], path: Path) -> InputError:
-    """The error about a file without vectors, by what it holds instead."""
+    """The error about a file without vectors, with what it holds instead."""
     objects = {name: one["object"] for name, one in others.items() if "object" in one}
     tables = [name for name, kind in objects.items() if "table" in kind]
     matrices = {name: " x ".join(map(str, one["shape"])) for name, one in others.items() if "shape" in one}

@@ -1,4 +1,4 @@
-"""Recordings are read in a process of its own: what a file holds is not known before, so this can be stopped."""
+"""Recordings are read in a separate process, which can be stopped: the content of a file is not known beforehand."""
 
 from __future__ import annotations
 

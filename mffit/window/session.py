@@ -299,7 +299,7 @@ class Session:
             self._fitted = run.digest
 
     def _is_of(self, config: Config) -> bool:
-        """Whether the last fit was made of the files that the configuration names, as they are now."""
+        """Whether the last fit used the files that the configuration names, as they are now."""
         now = {name: _of_file(digest, config.folder / name) or "" for name in input_names(config)}
         return self.data is not None and now == self.data["inputs"]
 

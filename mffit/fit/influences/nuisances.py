@@ -102,7 +102,7 @@ def _pressures_of_moment(points: Points) -> str:
 def _senses(points: Points) -> str:
     """Whether both senses go through the same angles, and conditions alone do not tell which sense it was.
 
-    A sense that follows load, camber or pressure looks like their effect; it is told from it inside a sweep that goes there and
+    A sense that follows load, camber or pressure looks like their effect; they are separated inside a sweep that goes there and
     back, by sweeps of one condition in either sense, and by senses that alternate over several conditions.
     """
     moving, part = sense(points), parts_of_sweeps(points)

@@ -34,7 +34,7 @@ def campaign_text(found: WatchedCampaign) -> str:
 
 
 def campaign_lines(found: WatchedCampaign) -> list[str]:
-    """How far the campaign is, and what it says so far."""
+    """Progress of the campaign, and its results so far."""
     more = len(found.awaited) - NAMED_IN_SENTENCE
     awaited = ", ".join(found.awaited[:NAMED_IN_SENTENCE]) + (f" and {more} more" if more > 0 else "")
     lines = [found.headline + (f"; awaited: {awaited}" if awaited else "")]
