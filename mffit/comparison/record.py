@@ -7,9 +7,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import ndtr
 
 from mffit.as_json import keys
 from mffit.brief import Brief
+from mffit.comparison.of_rig import ExplainedByRig
+from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.fleet import Specimen
 from mffit.numbers import Numbers
 from mffit.points import Points
@@ -147,10 +150,28 @@ class Comparison(Brief):
     apart: str = ""  #: words on different uses or nominal conditions of the files; empty if they agree
     points: Points | None = None  #: the data, if the second side is measured
     simulation: Simulation | None = None  #: the file on the rig, compared with these data
+    by_rig: ExplainedByRig | None = None  #: what errors of the rig explain, if the second side is measured
+
+    @property
+    def unequal(self) -> tuple[Difference, ...]:
+        """The numbers that differ at all."""
+        return tuple(row for row in self.numbers if row.change)
+
+    @property
+    def significant(self) -> tuple[Difference, ...]:
+        """The numbers, then the coefficients, that differ beyond chance, at a false discovery rate of 1 %."""
+        from scipy.stats import false_discovery_control  # slow to load, so it is imported only on use
+
+        known = [row for row in (*self.numbers, *self.coefficients) if row.z is not None]
+        if not known:
+            return ()
+        chances = [2.0 * ndtr(-abs(row.z or 0.0)) for row in known]
+        adjusted = false_discovery_control(np.clip(chances, 1e-300, 1.0))
+        return tuple(row for row, p in zip(known, adjusted, strict=True) if p < PREDICTION_FALSE_ALARM)
 
 
 keys(
     Comparison,
-    "first second headline numbers coefficients curves sweeps notes",
+    "first second headline by_rig numbers coefficients curves sweeps notes",
     headline="mffit.comparison.wording.headline",
 )

@@ -6,16 +6,19 @@ import math
 from collections.abc import Iterable, Iterator
 
 from mffit.comparison.characteristics import Tested
+from mffit.comparison.of_rig import ExplainedByRig
 from mffit.comparison.record import ComparedSubject, Comparison, Difference, Shared
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.at_nominal import Nominal
 from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, KEYS, SIDEWAYS, QuantityName
-from mffit.rig_errors import words_of
+from mffit.rig_errors import shown, words_of
 from mffit.rounding import AtLeast, stated
 from tir import Quantity
-from tir.errors import counted, listed, some
+from tir.errors import listed, some
 from tir.parameters import BY_NAME
 
+BEYOND_95 = 0.05
+"""Share of differences beyond a 95 % interval by chance."""
 OF_DIRECT = {key: DIRECT[name] for name, key in KEYS.items()}
 
 
@@ -33,44 +36,88 @@ def headline(found: Comparison) -> str:
 
 
 def differences(found: Comparison) -> str:
-    """The largest differences in a sentence."""
-    if found.sweeps:
-        parts = []
-        for channel, known in CHANNELS.items():
-            rows = [gap for gap in found.sweeps if gap.channel == channel]
-            if rows:
-                n = sum(gap.n for gap in rows)
-                total = math.sqrt(sum(gap.n * gap.rms**2 for gap in rows) / n)
-                parts.append(f"{total:.3g} {known.unit} rms in {channel}")
-        return f"{found.first} misses {found.second} by {listed(parts)}; {_significant(found)}."
+    """What differs significantly, and by how much the curves or the readings do, in a few sentences."""
+    return " ".join(
+        [*_against_data(found), _significant(found)]
+        if found.sweeps
+        else [_significant(found), _curves(found)]
+    )
+
+
+def _curves(found: Comparison) -> str:
     gap = {c: max((g.rms for g in found.curves if g.channel == c), default=0.0) for c in CHANNELS}
     if not any(gap.values()):
-        return f"The curves of {found.first} and {found.second} do not differ; {_significant(found)}."
+        return "The curves do not differ."
     named = {**SIDEWAYS, **{c: q for c, q in CHANNELS.items() if gap[c]}}
-    said = listed([f"{c} by up to {gap[c]:.3g} {q.unit} rms" for c, q in named.items()])
-    return f"The curves of {found.first} and {found.second} differ in {said}; {_significant(found)}."
+    return f"The curves differ in {listed([f'{c} by up to {gap[c]:.3g} {q.unit} rms' for c, q in named.items()])}."
+
+
+def _against_data(found: Comparison) -> list[str]:
+    """By how much a file misses data, and whether that is the rig or the tyre."""
+    parts = []
+    for channel, known in CHANNELS.items():
+        rows = [gap for gap in found.sweeps if gap.channel == channel]
+        if rows:
+            total = math.sqrt(sum(gap.n * gap.rms**2 for gap in rows) / sum(gap.n for gap in rows))
+            parts.append(f"{total:.3g} {known.unit} rms in {channel}")
+    missed = f"{found.first} misses {found.second} by {listed(parts)}."
+    return [missed] if found.by_rig is None else [missed, rig_or_tyre(found.by_rig)]
+
+
+def rig_or_tyre(found: ExplainedByRig) -> str:
+    """Whether errors of the rig explain what a file misses of its readings, in a sentence or two."""
+    if found.is_noise:
+        return "That is noise: nothing is left to explain."
+    left = listed([f"{size:.3g} {CHANNELS[name].unit} in {name}" for name, size in found.left.items()])
+    named = listed([f"{words_of(name)} {_shown(name, one)}" for name, one in found.errors.items()])
+    errors = f" ({named})" if named else ""
+    if found.suffices:
+        return f"It can be the rig: errors of the size that is declared{errors} leave {left}, which is noise."
+    rest = "the rest is the tyre, or an error that is not declared: mffit diagnose names it"
+    if found.mostly:
+        return f"Most of it can be the rig: errors of the size that is declared{errors} leave {left}; {rest}."
+    if not found.is_plausible:
+        return "It is not the rig as declared: its errors would have to be far larger; mffit diagnose names what is missing."
+    return f"It is not the rig as declared: its errors would leave {left}; {rest}."
+
+
+def _shown(name: str, error: Quantity) -> str:
+    value, u, unit = shown(name, error.value, error.u)
+    return stated(Quantity(value, u, unit), unit)
 
 
 def _significant(found: Comparison) -> str:
-    """A clause on the numbers and coefficients that differ significantly, or else on the largest relative difference."""
-    beyond = f"by more than {COVERAGE_FACTOR_95:.2g} standard uncertainties"
-    names = list(dict.fromkeys(quantity(row).word for row in _beyond(found.numbers)))
-    known = [row for row in found.coefficients if row.z is not None]
-    keys = [row.key for row in _beyond(known)]
-    coefficients = f"; of {counted(len(known), 'coefficient')} these do: {some(keys)}" if keys else ""
-    if names:
-        return f"numbers that differ {beyond}: {some(names)}{coefficients}"
-    if any(row.z is not None for row in found.numbers):
-        return f"no stiffness, peak or other number at a load differs {beyond}{coefficients}"
-    largest = max(found.numbers, key=lambda row: row.relative, default=None)
-    if largest is None or not largest.relative:
-        return "all numbers are equal"
-    return f"the largest relative difference is that of the {quantity(largest).word}, {100.0 * largest.relative:.3g} %"
+    """A sentence on what differs significantly, or else on the largest relative difference."""
+    rows = found.significant
+    if not found.unequal and not found.coefficients:
+        return f"All numbers of {found.first} and {found.second} are equal."
+    known = sum(row.z is not None for row in (*found.numbers, *found.coefficients))
+    if rows and found.sweeps:
+        return f"Numbers of the direct method that differ significantly: {some(_named(rows))}."
+    if rows:
+        how_many = f"{len(rows)} of {known} numbers and coefficients"
+        return f"{found.first} and {found.second} differ significantly in {how_many}: {some(_named(rows))}."
+    if known and found.sweeps:
+        return "No number of the direct method differs significantly."
+    if known:
+        beyond = [
+            row for row in (*found.numbers, *found.coefficients) if abs(row.z or 0.0) > COVERAGE_FACTOR_95
+        ]
+        return (
+            f"{found.first} and {found.second} do not differ significantly: of {known} numbers and coefficients "
+            f"{len(beyond) or 'none'} differ by more than {COVERAGE_FACTOR_95:.2g} standard uncertainties; chance makes "
+            f"{BEYOND_95 * known:.0f}."
+        )
+    largest = max(found.unequal or found.coefficients, key=lambda row: row.relative)
+    return (
+        f"The largest relative difference of {found.first} and {found.second} is that of {quantity(largest).word}, "
+        f"{100.0 * largest.relative:.3g} %."
+    )
 
 
-def _beyond(rows: Iterable[Difference]) -> list[Difference]:
-    """The differences that are significant."""
-    return [row for row in rows if row.z is not None and abs(row.z) > COVERAGE_FACTOR_95]
+def _named(rows: Iterable[Difference]) -> list[str]:
+    """Words of numbers and names of coefficients, each once."""
+    return list(dict.fromkeys(row.key if row.load is None else quantity(row).word for row in rows))
 
 
 def sides(row: Difference) -> tuple[str, str]:

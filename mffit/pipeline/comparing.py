@@ -12,8 +12,10 @@ import tir
 from mffit import as_json, fleet, prediction
 from mffit import config as configuration
 from mffit.comparison import ComparedSubject, Comparison, against_points, between, note_on_temperature
+from mffit.comparison.of_rig import declared_errors
 from mffit.config import Config, declared_faults
 from mffit.errors import InputError
+from mffit.fit.plan import channels_of
 from mffit.fleet import Specimen
 from mffit.measured import LoadResult
 from mffit.output import output_folder
@@ -159,7 +161,8 @@ def _with_data(subject: ComparedSubject, config: Config) -> Comparison:
     measured = direct(config, points)
     of_file = direct(without_play(config), points.replace(Fy=faultless.Fy, Mz=faultless.Mz))
     name = config.path.name if config.path is not None else config.tyre.name
-    found = against_points(subject, simulation, points, measured, of_file, name)
+    declared = declared_errors(config, points.used_setups, channels_of(points))
+    found = against_points(subject, simulation, points, measured, of_file, name, declared)
     if not warm:
         return found
     return replace(found, notes=(*found.notes, note_on_temperature(subject.name, warm[T_REF])))

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 
 from mffit.comparison import Comparison, CurveGap, wording
-from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.plan import channels_of
 from mffit.quantities import CHANNELS
 from mffit.report import constants, labels, page, style
@@ -23,7 +22,6 @@ from mffit.report.drawing.records import (
     Panel,
     Sheet,
     Trace,
-    both_sides,
     in_rows,
     listed,
 )
@@ -54,17 +52,15 @@ def _panel(found: Comparison, gap: CurveGap) -> Panel:
 
 def differences(found: Comparison) -> Sheet:
     """The largest differences of numbers over their standard uncertainties."""
-    rows = [row for row in found.numbers if row.z is not None][: constants.MOST_ROWS]
+    rows = [row for row in found.unequal if row.z is not None][: constants.MOST_ROWS]
     if not rows:
         return NOTHING
-    z = np.array([float(row.z or 0.0) for row in rows])
-    edge = Look(colour=style.MUTED, line="--", width=0.8)
-    colours = [style.CONTRAST if abs(value) > COVERAGE_FACTOR_95 else style.FAINT for value in z]
+    z, significant = np.array([float(row.z or 0.0) for row in rows]), found.significant
+    colours = [style.CONTRAST if row in significant else style.FAINT for row in rows]
     panel = Panel(
         x=Axis(label="difference in standard uncertainties"),
         y=listed([f"{wording.quantity(row).word}, {wording.place(row)}" for row in rows]),
         series=[Bars(name="difference", lengths=z, colours=colours)],
-        guides=both_sides("x", COVERAGE_FACTOR_95, edge),
     )
     return Sheet(rows=[[panel]], height=0.20 * len(rows) + 0.3)
 

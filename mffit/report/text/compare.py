@@ -10,8 +10,8 @@ from mffit.rounding import number, with_u
 
 def comparison_table(found: Comparison) -> str:
     """What ``mffit compare`` prints on one screen: the main sentence, the largest differences of each, the worst sweeps."""
-    worst = {row.key: row for row in reversed(found.numbers)}  # of each number, the first of its loads
-    numbers = [row for row in found.numbers if row is worst[row.key]]
+    worst = {row.key: row for row in reversed(found.unequal)}  # of each number, the first of its loads
+    numbers = [row for row in found.unequal if row is worst[row.key]]
     of_files = found.first, found.second, "difference", "in u"
     sweeps: list[tuple[str, ...]] = [
         (
