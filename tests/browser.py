@@ -39,6 +39,7 @@ for (const drawing of document.querySelectorAll('figure img')) {
   if (letter * box.width / drawing.naturalWidth < 7) found.push(`too small to read: ${said}`);
 }
 for (const drawing of document.querySelectorAll('.plot canvas, .plot svg')) {
+  if (drawing.closest('[hidden]')) continue;
   const box = drawing.getBoundingClientRect(), home = drawing.closest('.grid').getBoundingClientRect();
   const cut = box.width < 5 || box.height < 5 || box.left < home.left - 1 || (box.right > width + 1 && !phone);
   if (cut) found.push(`picture cut: ${box.left} to ${box.right}`);

@@ -43,12 +43,20 @@ function curve(panel, tyre, fixed) {
 }
 const isEstimated = (panel, tyre) => [panel.x, panel.y].some(name => tyre.estimated.includes(name));
 function point(panel, tyre, condition) {
+  const own = valueOf(panel, tyre, condition);
+  if (!isDifference()) return own;
+  const first = valueOf(panel, tyres[0], condition);
+  return {...own, y: own.y - first.y, zone: Math.max(own.zone, first.zone)};
+}
+function valueOf(panel, tyre, condition) {
   const found = evaluate(tyre, condition), of = name => name in found ? found[name] : condition[name];
   return {
     x: shownIn(panel.x, of(panel.x)), y: panel.sign * shownIn(panel.y, of(panel.y)),
     zone: Math.max(zone(tyre, condition), isEstimated(panel, tyre) ? UNTESTED : INSIDE), condition,
   };
 }
+// Less the first tyre, over an input: a picture of two outputs has no common place to compare at.
+const isDifference = () => byId("difference").checked;
 function curves(panel, tyre) {
   const fine = condition => ({points: curve(panel, tyre, {...now, ...condition}), isFine: true, tyre});
   const fan = panel.fan.map(angle => angle * controls.alpha.si).filter(alpha => Math.abs(alpha - now.alpha) > 1e-9);
@@ -77,6 +85,7 @@ function reached(inside, every) {
   return [Math.max(whole[0], low - room), Math.min(whole[1], high + room)];
 }
 function render(panel) {
+  panel.figure.hidden = isDifference() && !controls[panel.x];
   const shown = tyres.filter(tyre => tyre.shown), lines = shown.flatMap(tyre => curves(panel, tyre));
   panel.lines = lines.sort((a, b) => b.isFine - a.isFine);
   panel.dots = shown.map(tyre => [tyre, point(panel, tyre, now)]);
@@ -214,8 +223,10 @@ function all() {
   readTheme();
   table();
   panels.forEach(render);
+  const minus = isDifference() ? `; pictures show the difference from ${tyres[0].name}` : "";
+  byId("grid").classList.toggle("difference", isDifference());
   byId("condition").textContent = content.controls.map(({name}) =>
-    `${content.quantities[name].word} ${withUnit(name, shownIn(name, now[name]))}`).join(", ");
+    `${content.quantities[name].word} ${withUnit(name, shownIn(name, now[name]))}`).join(", ") + minus;
 }
 for (const {name} of content.controls) {
   byId(name).addEventListener("input", event => set(name, event.target.valueAsNumber, false));
@@ -225,12 +236,12 @@ for (const {name} of content.controls) {
 for (const choice of document.querySelectorAll("input[name=turn_slip]")) {
   choice.addEventListener("change", () => { mode = choice.value; update(); });
 }
-byId("loads").addEventListener("change", () => update());
+for (const id of ["loads", "difference"]) byId(id).addEventListener("change", () => update());
 byId("reset").addEventListener("click", start);
 function start() {
   mode = "file";
   document.querySelector("input[name=turn_slip][value=file]").checked = true;
-  byId("loads").checked = false;
+  byId("loads").checked = byId("difference").checked = false;
   for (const control of content.controls) set(control.name, control.start);
 }
 const dashed = tyre => tyre.estimated.length || Object.values(tyre.ranges).some(range => range.tested);

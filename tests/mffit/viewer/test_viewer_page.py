@@ -137,6 +137,28 @@ def test_a_curve_is_that_of_the_condition_shown(browser):
     drawn(browser)
 
 
+def test_curves_are_shown_as_differences_from_the_first_tyre(browser):
+    """At equal conditions; a picture of one output over another has none, and is not shown."""
+    move(browser, Fz=1800, gamma=5, alpha=0)
+    browser.find_element("id", "difference").click()
+    drawn(browser)
+    first, second = (tir.read(file) for file in FILES[:2])
+    curve = browser.execute_script("return window.mffit.curve('Fy-alpha', 1)")
+    at = {"alpha": np.radians([point["x"] for point in curve]), "gamma": np.radians(5.0), "phi_t": 0.0}
+    at |= {"Vx": first["LONGVL"], "p": first["INFLPRES"]}
+    Fy = [tyre(1800.0, turn_slip=tyre.turn_slip, **at).Fy for tyre in (first, second)]
+    assert np.allclose([point["y"] for point in curve], Fy[1] - Fy[0], rtol=1e-9, atol=1e-9)
+    own = browser.execute_script("return window.mffit.curve('Fy-alpha', 0)")
+    assert {point["y"] for point in own} == {0}
+    hidden = [figure.get_attribute("id") for figure in browser.find_elements("css selector", "figure[hidden]")]
+    assert hidden == [panel.key for panel in PANELS if panel.x in OUTPUTS]
+    assert complaints(browser) == []
+    assert console_errors(browser) == []
+    browser.find_element("id", "reset").click()
+    drawn(browser)
+    assert not browser.find_elements("css selector", "figure[hidden]")
+
+
 def test_a_picture_is_drawn_where_its_curves_are(browser):
     move(browser, alpha=0, gamma=0)
     on, share = browser.execute_script(
