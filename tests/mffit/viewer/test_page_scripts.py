@@ -22,6 +22,7 @@ import pytest
 from small_rigs import SAMPLE
 
 import tir
+from mffit.config.lines import inside, line_ranges, ranges_text
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.points import concatenate
 from mffit.rig import Simulation
@@ -328,6 +329,26 @@ def test_a_picture_is_saved_as_its_numbers(engine, result):
     assert [float(row["Fy"]) for row in first] == pytest.approx(tyre.Fy, rel=1e-5, abs=1e-3)
     order = [float(row["alpha"]) for row in table if row["file"]]
     assert order == sorted(order)
+
+
+def test_lines_mean_the_same_in_a_page_and_in_python(engine, data):
+    """What a page marks as left out by an entry of tyre.toml, and the entry that it writes for chosen points."""
+    file, line, last = (np.array(engine(f"columns.{name}")) for name in ("file", "line", "last"))
+    name = data["points"]["files"][0]
+    mine = np.flatnonzero(file == 0)
+    rng = np.random.default_rng(7)
+    for _ in range(20):
+        ends = np.sort(rng.integers(1, line[mine].max() + 3, size=(4, 2)))
+        text = ", ".join(f"{a}-{b}" if a != b else str(a) for a, b in ends)
+        engine(f"markLeftOut([{{file: {json.dumps(name)}, lines: {json.dumps(text)}}}])")
+        wanted = np.zeros(len(line), dtype=bool)
+        wanted[mine] = inside(line[mine], line_ranges(text))
+        assert np.array_equal(np.array(engine("left"), dtype=bool), wanted)
+        chosen = np.sort(rng.choice(mine, 5, replace=False))
+        (entry,) = engine(f"lineRanges({chosen.tolist()})")
+        assert entry["file"] == name
+        assert entry["lines"] == ranges_text(line_ranges(", ".join(f"{line[i]}-{last[i]}" for i in chosen)))
+    engine("markLeftOut([])")
 
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda path: path.name)

@@ -150,7 +150,9 @@ def test_curves_are_shown_as_differences_from_the_first_tyre(browser):
     assert np.allclose([point["y"] for point in curve], Fy[1] - Fy[0], rtol=1e-9, atol=1e-9)
     own = browser.execute_script("return window.mffit.curve('Fy-alpha', 0)")
     assert {point["y"] for point in own} == {0}
-    hidden = [figure.get_attribute("id") for figure in browser.find_elements("css selector", "figure[hidden]")]
+    hidden = [
+        figure.get_attribute("id") for figure in browser.find_elements("css selector", "figure[hidden]")
+    ]
     assert hidden == [panel.key for panel in PANELS if panel.x in OUTPUTS]
     assert complaints(browser) == []
     assert console_errors(browser) == []
