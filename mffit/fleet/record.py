@@ -7,8 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.special import gammaincc
 
 from mffit.as_json import keys
+from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.fleet.hierarchy import Hierarchy
 from mffit.fleet.specimen import Specimen
 from mffit.scatter import rms
@@ -62,6 +64,12 @@ class FleetScatter:
     sd: float  #: between the tyres
     u: float  #: rms of the stated standard uncertainties
     tyres: int
+    chance: float  #: probability that tyres which are equal scatter so much
+
+    @property
+    def differ(self) -> bool:
+        """Whether the tyres differ, rather than scatter by chance."""
+        return self.chance < PREDICTION_FALSE_ALARM
 
     @property
     def beyond(self) -> float:
@@ -69,7 +77,7 @@ class FleetScatter:
         return math.sqrt(max(self.sd**2 - self.u**2, 0.0))
 
 
-keys(FleetScatter, "* beyond")
+keys(FleetScatter, "* differ beyond")
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +114,15 @@ keys(Fleet, "tyres=rows scatter rigs notes", scatter=lambda found: _scatters(fou
 def scatter_of(found: Sequence[Quantity]) -> FleetScatter:
     """Mean, scatter and typical uncertainty of at least two numbers."""
     values, u = np.array([q.value for q in found]), np.array([q.u for q in found])
-    return FleetScatter(mean=float(values.mean()), sd=float(values.std(ddof=1)), u=rms(u), tyres=len(found))
+    n, weight = len(found), 1.0 / np.maximum(u, 1e-12 * np.abs(values) + 1e-300) ** 2
+    apart = values - np.average(values, weights=weight)
+    return FleetScatter(
+        mean=float(values.mean()),
+        sd=float(values.std(ddof=1)),
+        u=rms(u),
+        tyres=n,
+        chance=float(gammaincc(0.5 * (n - 1), 0.5 * np.sum(weight * apart**2))),  # of chi-square
+    )
 
 
 def _scatters(found: Fleet) -> dict[str, object]:

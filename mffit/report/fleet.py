@@ -11,10 +11,10 @@ import numpy as np
 from mffit.fleet import EPSILON, Fleet
 from mffit.fleet.constants import FEWEST_TYRES_FOR_SCATTER
 from mffit.quantities import COMPARED, DIRECT
-from mffit.report import constants, labels, page, style
-from mffit.report.drawing.records import NOTHING, Axis, Look, Panel, Sheet, Trace, in_rows
+from mffit.report import labels, page, style
+from mffit.report.drawing.records import Look, Panel, Sheet, Trace, in_rows, listed
 from mffit.report.text.many import misfit_channels
-from tir.errors import listed
+from tir.errors import listed as words_listed
 
 if TYPE_CHECKING:
     from tir import Quantity
@@ -26,57 +26,46 @@ LOOKS = {
     "together": Look(colour=style.ACCENT, marker="o", size=4.0, width=1.2),
 }
 COLUMNS = 3
+LINE = 0.28
+"""Height for each tyre in a panel [in]."""
 APART = 0.22
 """Distance between the estimates of one tyre, as a share of the distance between two tyres."""
 
 
-def epsilon_of_all(found: Fleet) -> Sheet:
-    """Camber reduction factor of every specimen by each estimate; every bar is one standard uncertainty."""
-    estimates = found.estimates
-    if not estimates:
-        return NOTHING
-    series = [
-        _bars(found.numbers(key), APART * (k - (len(estimates) - 1) / 2.0), LOOKS[key], words)
-        for k, (key, words) in enumerate(estimates.items())
-    ]
-    panel = Panel(x=_names(found), y=Axis(label=labels.EPSILON.axis), series=series)
-    return Sheet(rows=[[panel]], height=2.8, key={words: LOOKS[key] for key, words in estimates.items()})
-
-
 def numbers_of_all(found: Fleet) -> Sheet:
-    """Stiffnesses and peaks of every specimen."""
+    """Every number of every tyre, a panel each and a line for each tyre; every bar is one standard uncertainty."""
+    estimates, names = found.estimates, listed([row.specimen.name for row in found.rows])
+    many = len(estimates) - 1
     panels = [
         Panel(
             title=quantity.column(f"{quantity.word} {quantity.mathtext}"),
-            x=_names(found, COLUMNS),
+            y=names,
             series=[_bars(found.numbers(key), 0.0, LOOKS["together"], quantity.word)],
         )
         for key, quantity in COMPARED.items()
+        if any(found.numbers(key))
     ]
-    return Sheet(rows=in_rows(panels, columns=COLUMNS), height=1.9)
+    if estimates:
+        series = [
+            _bars(found.numbers(key), APART * (k - 0.5 * many), LOOKS[key], words)
+            for k, (key, words) in enumerate(estimates.items())
+        ]
+        panels.insert(0, Panel(title=labels.EPSILON.axis, y=names, series=series))
+    key = {words: LOOKS[key] for key, words in estimates.items()}
+    return Sheet(rows=in_rows(panels, columns=COLUMNS), height=LINE * len(found.rows) + 0.3, key=key)
 
 
 def _bars(numbers: Sequence[Quantity | None], shift: float, look: Look, name: str) -> Trace:
     known = [(k + shift, q.value, q.u) for k, q in enumerate(numbers) if q is not None]
-    x, y, u = np.array(known, dtype=float).reshape(-1, 3).T
-    return Trace(name=name, x=x, y=y, half=u, look=look)
-
-
-def _names(found: Fleet, columns: int = 1) -> Axis:
-    """The tyres' names if they fit side by side below one of ``columns`` panels, else their numbers in the table."""
-    n = len(found.rows)
-    names = [row.specimen.name for row in found.rows]
-    if n * (2 + max(map(len, names))) * style.LETTER <= style.WIDTH / columns:
-        return Axis(low=-0.6, high=n - 0.4, words={float(k): name for k, name in enumerate(names)})
-    step = max(1, n // constants.MOST_ROWS)
-    return Axis(low=-0.6, high=n - 0.4, words={float(k): str(k + 1) for k in range(0, n, step)})
+    y, x, u = np.array(known, dtype=float).reshape(-1, 3).T
+    return Trace(name=name, x=x, y=y, half_x=u, look=look)
 
 
 SPIN = ("PECP1", "PECP2", "PKY6", "PKY7", "PDYP1", "PKYP1", "QDTP1", "QCRP1")
 """Coefficients of spin and camber stiffness that the page shows of a population; fleet.json holds all."""
 
-FLEET: Mapping[str, Callable[[Fleet], Sheet]] = {"epsilon_gamma": epsilon_of_all, "numbers": numbers_of_all}
-"""Every picture of the page."""
+FLEET: Mapping[str, Callable[[Fleet], Sheet]] = {"numbers": numbers_of_all}
+"""The picture of the page."""
 
 
 def headline(found: Fleet) -> str:
@@ -86,11 +75,11 @@ def headline(found: Fleet) -> str:
     ]  # listed from the worst to the best
     words = dict.fromkeys(best, DIRECT["epsilon_gamma"].word) | {key: q.word for key, q in COMPARED.items()}
     scatters = {word: s for key, word in words.items() if (s := found.scatter(key)) is not None}
-    apart = [word for word, s in scatters.items() if s.beyond > 0.0]
+    apart = [word for word, s in scatters.items() if s.differ]
     alike = [word for word in scatters if word not in apart]
     parts = [
-        f"The tyres scatter by more than their uncertainty in {listed(apart)}" if apart else "",
-        f"{'they' if apart else 'The tyres'} agree within their uncertainty in {listed(alike)}"
+        f"The tyres differ by more than their uncertainty in {words_listed(apart)}" if apart else "",
+        f"{'they' if apart else 'The tyres'} agree within their uncertainty in {words_listed(alike)}"
         if alike
         else "",
     ]

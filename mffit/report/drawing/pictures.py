@@ -190,6 +190,8 @@ def _draw_axis(axes: Axes, name: str, axis: Axis, words: Sequence[str]) -> None:
     own, (low, high) = {"x": (axes.xaxis, axes.get_xlim()), "y": (axes.yaxis, axes.get_ylim())}[name]
     if name == "y" and not axis.logarithmic:
         axes.locator_params("y", nbins=5)
+    if name == "x" and axis.words is None and not axis.logarithmic:
+        _space_out(axes)
     own.set_visible(False)
     places = np.array([*axis.words] if axis.words is not None else own.get_majorticklocs())
     shown = (places >= min(low, high)) & (places <= max(low, high))
@@ -204,6 +206,16 @@ def _draw_axis(axes: Axes, name: str, axis: Axis, words: Sequence[str]) -> None:
         x, y = across[::-1] if name == "x" else across
         grid = axes.get_xaxis_transform("grid") if name == "x" else axes.get_yaxis_transform("grid")
         axes.add_artist(Line2D(x, y, transform=grid, zorder=0.5, color=style.GRID, linewidth=0.7))
+
+
+def _space_out(axes: Axes) -> None:
+    """Fewer ticks across, where their numbers would run into each other."""
+    own, (low, high) = axes.xaxis, sorted(axes.get_xlim())
+    places = [float(x) for x in own.get_majorticklocs() if low <= x <= high]
+    longest = max(map(len, own.get_major_formatter().format_ticks(places)), default=0)
+    most = int(axes.get_position().width * style.WIDTH / (style.LETTER * (longest + 1)))
+    if most < len(places):
+        axes.locator_params("x", nbins=max(most, 2))
 
 
 def _words_of(axis: Axis, width: float) -> list[str]:
