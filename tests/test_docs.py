@@ -326,6 +326,24 @@ def test_the_scripts_that_a_page_runs_are_in_the_repository(page):
     assert not missing, f"{name_of(page)} runs {', '.join(missing)}, which is not there"
 
 
+SAID = re.compile(r"(?:`|<code>)(mffit [a-z][^`<]*)(?:`|</code>)")
+
+
+def test_the_commands_that_the_program_names_exist_with_their_options():
+    """In its messages, pages and docstrings; what is filled in is a placeholder."""
+    wrong = []
+    for file in sorted(
+        path for ending in ("py", "j2", "toml") for path in (ROOT / "mffit").rglob(f"*.{ending}")
+    ):
+        for said in SAID.findall(
+            re.sub(r'"\s*\n\s*f?"', "", text_of(file))
+        ):  # a text may go on in the next line
+            call = " ".join(re.sub(r"\{+[^{}]*\}+", "X", said).split())
+            if sentence := wrong_in_command(call):
+                wrong.append(f"{file.relative_to(ROOT)}: {sentence}")
+    assert not wrong, "; ".join(wrong)
+
+
 LOOSE_OPTION = re.compile(r"`(--[\w-]+)[^`]*`")
 
 

@@ -1,4 +1,4 @@
-"""``mffit convert --to``: a file of MF 6.2 as one of MF 5.2 or PAC2002, by a fit of the old formula to its forces."""
+"""``mffit convert --to mf52``: a file of MF 6.2 as one of MF 5.2 or PAC2002, by a fit of the old formula to its forces."""
 
 from __future__ import annotations
 
