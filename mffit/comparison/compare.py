@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from mffit.comparison import constants, wording
 from mffit.comparison.characteristics import Tested, characteristics, with_slopes
-from mffit.comparison.of_rig import explained_by_rig
 from mffit.comparison.record import (
     ComparedSubject,
     Comparison,
@@ -185,12 +183,11 @@ def against_points(
     measured: Sequence[LoadResult],
     simulated: Sequence[LoadResult],
     name: str,
-    declared: Mapping[str, float] = MappingProxyType({}),
 ) -> Comparison:
     """The comparison of a file, the first side, with measured points, the second side, of this ``name``.
 
     ``simulation`` is the file on the declared rig; ``measured`` and ``simulated`` are results of the direct method for the
-    points and for simulated readings of the file, ``declared`` the standard uncertainties of the rig's errors.
+    points and for simulated readings of the file.
     """
     return Comparison(
         first=subject.name,
@@ -202,7 +199,6 @@ def against_points(
         notes=(wording.note_on_data(subject.name),),
         points=points,
         simulation=simulation,
-        by_rig=explained_by_rig(points, simulation, declared),
     )
 
 

@@ -12,7 +12,7 @@ import tir
 from mffit import as_json, fleet, prediction
 from mffit import config as configuration
 from mffit.comparison import ComparedSubject, Comparison, against_points, between, note_on_temperature
-from mffit.comparison.of_rig import declared_errors
+from mffit.comparison.of_rig import declared_errors, explained_by_rig
 from mffit.config import Config, declared_faults
 from mffit.errors import InputError
 from mffit.fit.plan import channels_of
@@ -162,7 +162,8 @@ def _with_data(subject: ComparedSubject, config: Config) -> Comparison:
     of_file = direct(without_play(config), points.replace(Fy=faultless.Fy, Mz=faultless.Mz))
     name = config.path.name if config.path is not None else config.tyre.name
     declared = declared_errors(config, points.used_setups, channels_of(points))
-    found = against_points(subject, simulation, points, measured, of_file, name, declared)
+    found = against_points(subject, simulation, points, measured, of_file, name)
+    found = replace(found, by_rig=explained_by_rig(points, simulation, declared))
     if not warm:
         return found
     return replace(found, notes=(*found.notes, note_on_temperature(subject.name, warm[T_REF])))
