@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 import tomllib
 from pathlib import Path
 
@@ -39,6 +40,17 @@ def filled_in(file: Path, *keys: str) -> None:
     for key in keys:
         text = re.sub(rf"^# (?={key} = .*# FILL IN)", "", text, flags=re.MULTILINE)
     file.write_text(text)
+
+
+def test_what_init_says_to_do_next(tmp_path):
+    """What to fill in, or a command that a shell takes as it is printed."""
+    empty = CliRunner().invoke(projects.init, [str(tmp_path / "new")]).output
+    assert all(key in empty for key in to_fill_in())
+    sample = CliRunner().invoke(projects.init, ["--sample", "flat-track", str(tmp_path / "a sample")]).output
+    (line,) = sample.partition("Next:\n")[2].splitlines()
+    program, command, file = shlex.split(line, comments=True)
+    assert (program, command) == ("mffit", "build")
+    assert config.load(file).tyre.name == "flat-track"
 
 
 def test_the_configuration_is_valid_and_its_files_are_there(tmp_path):
