@@ -18,6 +18,7 @@ from mffit.points import levels
 from mffit.points.clock import spread
 from mffit.points.constants import CORE
 from mffit.recordings import constants
+from mffit.suspicion.constants import LARGEST_MOMENT_ARM
 from mffit.sweeps.channels import BY_NAME, Channel
 from mffit.sweeps.columns import implausible, numbers
 from mffit.sweeps.raw_table import RawTable
@@ -281,7 +282,7 @@ def _american(known: _Known) -> tuple[dict[str, Choice], list[str]]:
     """American units for the columns without a stated unit, and a remark if these units are possible but not certain.
 
     They are certain if some column can only be in an American unit and no stated unit or pressure is in another one. A
-    pressure in psi does not count, because rigs in Europe have gauges in psi, too.
+    pressure in psi does not count, because rigs in Europe have gauges in psi, too, unless the moments are too large in N m.
     """
     found, chosen, _ = known
     of_file = [column for column in found.values() if column.unit and not column.given]
@@ -298,9 +299,17 @@ def _american(known: _Known) -> tuple[dict[str, Choice], list[str]]:
     if "p_kPa" in found:
         others.append(known.unit("p_kPa"))
     sign = next((column for name, column in found.items() if _only_american(name, known)), None)
+    moments = max((found[name].size for name in chosen if found[name].channel.unit == "N m"), default=0.0)
+    arm = moments / found["Fz_N"].size if "Fz_N" in found and found["Fz_N"].size else 0.0
+    psi = "p_kPa" in found and spelt(known.unit("p_kPa")) == spelt("psi")
+    if (
+        psi
+        and known.radius is not None
+        and arm > LARGEST_MOMENT_ARM * known.radius
+        and known.unit("Fz_N") == "N"
+    ):
+        sign = sign or found["p_kPa"]  # in newtons no contact has such a moment
     if sign is not None and all(spelt(unit) in AMERICAN for unit in others):
-        moments = max((found[name].size for name in chosen if found[name].channel.unit == "N m"), default=0.0)
-        arm = moments / found["Fz_N"].size if "Fz_N" in found and found["Fz_N"].size else 0.0
         given = {}
         for name, unit in doubtful.items():
             column = found[name]

@@ -61,6 +61,12 @@ STEEPEST_OVER_SIDESLIP = Real(
 SMALLEST_FRICTION = Real(
     0.02, "-", "Side force per load, at angles that show a force, below which it is asked for."
 )
+USUAL_FRICTION = Real(
+    0.3,
+    "-",
+    "Side force per load at large sideslip, below which it is asked for: on ice it is 0.1, on wet roads 0.4.",
+)
+SIDESLIP_OF_FRICTION = Real(6.0, "deg", "Sideslip from which tyres are near their largest side force.")
 LARGEST_MOMENT_ARM = Real(
     0.5,
     "-",

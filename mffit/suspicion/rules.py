@@ -45,6 +45,7 @@ RULES: tuple[Rule, ...] = (
     single_files.impossible_file,
     single_files.unusual_load,
     single_files.unusual_file,
+    single_files.low_friction,
     *slopes.NO_TYRE,
     declarations.contradicted,
     declarations.other_frame,

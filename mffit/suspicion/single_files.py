@@ -190,22 +190,38 @@ def _pressure(part: Points, config: Config) -> Iterator[Unusual]:
         yield Unusual("p_kPa", said)
 
 
-TESTS: tuple[Callable[[Points, Config], Iterator[Unusual]], ...] = (_pressure, _steep, _weak, _strong)
+def _slippery(part: Points, config: Config) -> Iterator[Unusual]:
+    far = (np.abs(part.alpha) >= constants.SIDESLIP_OF_FRICTION.rad) & _loaded(part) & part.free_rolling
+    if np.sum(far) >= constants.FEWEST:
+        friction = np.max(np.abs(part.Fy[far]) / part.Fz[far])
+        if friction < constants.USUAL_FRICTION:
+            largest = np.degrees(np.max(np.abs(part.alpha[far])))
+            yield Unusual(
+                "Fy_N", f"reaches {friction:.2g} times the load up to {largest:.3g} deg of sideslip"
+            )
 
 
-def unusual(part: Points, config: Config) -> list[Unusual]:
+Test = Callable[[Points, Config], Iterator[Unusual]]
+TESTS: tuple[Test, ...] = (_pressure, _steep, _weak, _strong)
+ASKED: tuple[Test, ...] = (*TESTS, _slippery)
+"""With tests that some sound tyre or road does not pass, and by which no file is refused."""
+
+
+def unusual(part: Points, config: Config, tests: tuple[Test, ...] = TESTS) -> list[Unusual]:
     """The unusual values of a file; empty for most files."""
-    return [found for test in TESTS for found in test(part, config)]
+    return [found for test in tests for found in test(part, config)]
 
 
-def _explained(found: list[Unusual], part: Points, config: Config) -> tuple[Unusual, Mistake] | None:
-    """What a known mistake explains, and the mistake: without it the least is unusual, and nothing that was usual before."""
+def _explained(found: list[Unusual], part: Points, config: Config) -> tuple[Unusual, list[Mistake]] | None:
+    """What known mistakes explain, and these: without one of them the least is unusual, and nothing that was usual before."""
     before, best = {one.column for one in found}, None
     for mistake in (one for one in MISTAKES if found and one.beyond_doubt):
-        left = {one.column for one in unusual(mistake.undone(part, AS_READ), config)}
+        left = {one.column for one in unusual(mistake.undone(part, AS_READ), config, ASKED)}
         if left < before:
             before = left
-            best = next(one for one in found if one.column not in left), mistake
+            best = next(one for one in found if one.column not in left), [mistake]
+        elif best and left == before and mistake.column == best[1][0].column and best[1][0].units:
+            best[1].append(mistake)
     return best
 
 
@@ -214,9 +230,11 @@ def impossible_file(part: Points, config: Config) -> Iterator[Finding]:
     """Pressure over the nominal one, slopes of Fy over the angles, Fy, Mz and Mx over load; as read and without each mistake."""
     found = unusual(part, config)
     if explained := _explained(found, part, config):
-        (column, said, _), mistake = explained
+        (column, said, _), (mistake, *others) = explained
         said = said if column == mistake.column else f"{column} {said}"
-        looks = f"it looks like {mistake.looks}: {mistake.remedy}"
+        also = "".join(f" or {other.units[0]}" for other in others if other.units)
+        looks = f"it looks like {mistake.looks}{also}: {mistake.remedy}"
+        looks += ", with the true unit" * bool(also)
         yield Finding({"said": said, "looks": looks}, column=mistake.column)
     for column, said, impossible in found:
         if impossible:
@@ -233,3 +251,16 @@ def unusual_file(part: Points, config: Config) -> Iterator[Finding]:
         yield Finding(
             {"column": column, "said": said, "looks": UNEXPLAINED, "file": part.files[part.file[0]]}
         )
+
+
+@rule_of_files(
+    id="low-friction",
+    outcome=Outcome.WARNED,
+    sentence="{column} of {file} {said}: unless the road was wet or of ice, check the units of Fy_N and Fz_N (a load in lbf, "
+    "kgf or kN and a force in another unit look like this)",
+)
+def low_friction(part: Points, config: Config) -> Iterator[Finding]:
+    """Fy per load at large sideslip, where nothing else is unusual."""
+    if not unusual(part, config):
+        for column, said, _ in _slippery(part, config):
+            yield Finding({"column": column, "said": said, "file": part.files[part.file[0]]})

@@ -505,3 +505,20 @@ def test_a_rotation_under_the_name_of_the_contract_is_never_left_out():
 @pytest.mark.parametrize("silent", [{"SA": None}, {"ET": np.zeros(N)}])
 def test_the_unit_of_a_time_that_shows_no_steering_is_called_unknown(silent):
     assert "not known" in guessed(**silent).found["time_s"].why
+
+
+@pytest.mark.parametrize(("moment", "unit"), [(60.0, "ft-lb"), (720.0, "in-lb")])
+def test_moments_too_large_in_newtons_show_american_units_with_a_gauge_in_psi(moment, unit):
+    """60 ft-lb at 562 lbf have an arm of 33 mm, and 60 N m at 562 N one that exceeds half the radius of a kart's tyre."""
+    american = {
+        "P": np.full(N, 12.0),
+        "FZ": np.full(N, 562.0),
+        "FY": -517.0 * WAVE,
+        "MZ": moment * WAVE,
+        "MX": None,
+        "FX": None,
+    }
+    found = units(radius=0.14, **american)
+    assert (found["Fz_N"], found["Fy_N"], found["Mz_Nm"], found["V_mps"]) == ("lbf", "lbf", unit, "mph")
+    assert units(radius=0.14, **american | {"MZ": 20.0 * WAVE})["Fz_N"] == "N"
+    assert units(radius=0.14, **american | {"P": np.full(N, 83.0)})["Fz_N"] == "N"

@@ -68,6 +68,7 @@ SINGLE_FILES = [
     ("impossible-file", tyre(Fy=changed(FORCE, [1, 2, 3, 4], 6010.0)), tyre(Fy=changed(FORCE, [1, 2, 3], 6010.0))),
     ("unusual-file", tyre(p=83e3), tyre(p=84e3)),
     ("unusual-file", tyre(p=505e3), tyre(p=495e3)),
+    ("low-friction", tyre(alpha=3.1 * ALPHA, Fy=-440.0 * np.sign(ALPHA)), tyre(alpha=3.1 * ALPHA, Fy=-460.0 * np.sign(ALPHA))),
 ]  # fmt: skip
 AS_A_MISTAKE = [
     (SOUND.replace(alpha=np.radians(ALPHA)), "its sideslip in rad"),
@@ -77,7 +78,7 @@ AS_A_MISTAKE = [
     (tyre(Fy=0.03 * FORCE, Mz=FORCE), "side force and moment exchanged"),
     (tyre(0.0, CAMBER, Fy=60.0 * np.sin(CAMBER), Mz=1200.0 * np.sin(CAMBER)), "side force and moment exchanged"),
     (tyre(0.0, CAMBER, Fy=1.2 * np.sin(CAMBER), Mz=30.0 * np.sin(CAMBER)), "its side force in kN"),
-    (tyre(Fz=1500.0 / 9.80665, Fy=FORCE, Mz=-0.03 * FORCE), "its load in kgf"),
+    (tyre(Fz=1500.0 / 9.80665, Fy=FORCE, Mz=-0.03 * FORCE), "its load in kgf or lbf"),
     (tyre(Mz=-30.0 * FORCE), "its moment in N mm"),
     (tyre(Mx=30.0 * FORCE), "its overturning moment in N mm"),
 ]  # fmt: skip
