@@ -32,7 +32,7 @@ REPORT = "report.html"
 EXPLAINED = "explained.txt"
 """What ``mffit build --explain`` prints."""
 WRITTEN = ("result.json", "information.json", prediction.FILE, "points.csv", EXPLAINED, REPORT)
-"""Files that every build writes beside its property files."""
+"""Files that every build writes in addition to its property files."""
 FOLDER, INDEX = "ensemble", "index.csv"
 NUMBERS = ("epsilon_gamma", *COMPARED)
 """Columns of the table of drawn tyres, after the file."""
