@@ -26,12 +26,14 @@ def known(names, root):
     return Predictor(0.0, names, {"Fx": own, "Fy": own}, {}, {})
 
 
-def found(pressures, **changes):
-    """The bands of the front tyre if PKY1 and PPY2 are known to ``U`` and sweeps were run at these pressures [kPa]."""
+def found(pressures, known_to=U, **changes):
+    """The bands of the front tyre if PKY1 and PPY2 are known to so much and sweeps were run at these pressures [kPa]."""
     tyre = small_rigs.truth().replace(**changes)
     p = 1e3 * np.array([*[250.0] * 20, *np.repeat(pressures, 10)])
     points = make_points(np.linspace(-0.1, 0.1, len(p)), 0.0, 1400.0, p=p, V=10.0, phi_t=0.0)
-    return tyre, bands(known((*U,), np.diag([*U.values()])), {"PPY2"}, Simulation.of(tyre), points)
+    return tyre, bands(
+        known((*known_to,), np.diag([*known_to.values()])), {"PPY2"}, Simulation.of(tyre), points
+    )
 
 
 def by_differences(tyre, name, p):
@@ -65,6 +67,16 @@ def test_elsewhere_it_counts_and_is_named_with_its_share():
     assert "PKY1" not in said
 
 
+def test_the_smaller_part_of_a_band_is_not_blamed_for_it():
+    """A tenth of the uncertainty of PPY2 leaves most of the band to PKY1."""
+    _, usual = found([200.0, 300.0])
+    _, wide = found([200.0, 300.0], known_to={**U, "PPY2": 0.1 * U["PPY2"]})
+    parts = 0.01 * usual.share, 1.0 - usual.share
+    assert wide.share == pytest.approx(parts[0] / sum(parts))
+    assert 0.02 < wide.share < 0.5
+    assert wide.unseen == ""
+
+
 def test_a_nominal_pressure_that_was_not_run_is_one_of_the_others():
     tyre, wide = found([], NOMPRES=290e3)
     assert wide.others == (290e3,)
@@ -93,6 +105,7 @@ def test_one_sideslip_with_slip_leaves_the_way_there_to_the_formula():
 
     one = combined(sideslips=(0.0, 5.0))
     assert one.sideslip == pytest.approx(np.radians(5.0), rel=0.01)
+    assert one.beside == pytest.approx(np.radians(2.5), rel=0.01)
     assert one.wider
     assert one.half_at < 0.1 * one.half_beside
     assert combined(sideslips=(-5.0, 0.0, 5.0)) is not None
