@@ -66,13 +66,13 @@ def compile_kernels(*, turn_slip: bool | None = None, star: bool = False, limits
             kernels.meter(kind, Switches(on, star, limits)).load()
 
 
-def forces(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> Forces:
+def forces(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> Forces[Any]:
     """Forces for :data:`~tir.codegen.program.INPUTS`, every one given; see :meth:`tir.Tyre.__call__`."""
     found = _by_formula(tyre, inputs, switches)
     return found if tyre.correction is None else tyre.correction.added(found, inputs, limits=switches.limits)
 
 
-def _by_formula(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> Forces:
+def _by_formula(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> Forces[Any]:
     arrays = arrays_of(inputs)
     if {a.dtype for a in arrays} != ONLY_DOUBLES:
         if not _real(arrays):
@@ -92,7 +92,7 @@ def _by_formula(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> 
     return tuple.__new__(Forces, ROWS(out if len(shape) == 1 else out.reshape(len(FORCES), *shape)))
 
 
-def state(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> State:
+def state(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> State[Any]:
     """State for the same; see :meth:`tir.Tyre.state`."""
     arrays = arrays_of(inputs)
     if _real(arrays) and all(a.shape == () for a in arrays):

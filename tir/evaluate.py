@@ -23,7 +23,7 @@ NEARLY_UNLOADED, NEARLY_FLAT = float(SMALLEST_LOAD), PRESSURE_RANGE[0]
 
 def evaluate(
     p: Any, *inputs: Any, turn_slip: bool = False, star: bool = False, limits: bool = False, **more: Any
-) -> tuple[Forces, State]:
+) -> tuple[Forces[Any], State[Any]]:
     """Evaluate MF 6.2 in steady state (ISO-W, SI, radians).
 
     Parameters
@@ -52,7 +52,7 @@ def evaluate(
     return unchecked(p, at._replace(Vx=Vx, pressure=pressure), Switches(turn_slip, star, limits))
 
 
-def unchecked(p: Any, at: OperatingCondition, switches: Switches) -> tuple[Forces, State]:
+def unchecked(p: Any, at: OperatingCondition, switches: Switches) -> tuple[Forces[Any], State[Any]]:
     """As :func:`evaluate`, all given, unchecked: a divisor that is 0 gives infinity, NaN or an ArithmeticError."""
     if isinstance(at.pressure, float | int):  # Python's own numbers raise at 0 ** -0.4, numpy's do not
         at = at._replace(pressure=np.float64(at.pressure))
@@ -60,7 +60,7 @@ def unchecked(p: Any, at: OperatingCondition, switches: Switches) -> tuple[Force
     return either_way(p, backwards, at, switches) if np.any(backwards) else forwards(p, at, switches)
 
 
-def forwards(p: Any, at: OperatingCondition, switches: Switches) -> tuple[Forces, State]:
+def forwards(p: Any, at: OperatingCondition, switches: Switches) -> tuple[Forces[Any], State[Any]]:
     """The model of a wheel that rolls forwards, ``Vx`` >= 0."""
     unloaded = np.real(at.Fz) <= 0.0
     given = held = at._replace(Fz=select(unloaded, NEARLY_UNLOADED, at.Fz))
@@ -76,7 +76,9 @@ def forwards(p: Any, at: OperatingCondition, switches: Switches) -> tuple[Forces
     return Forces(*(select(unloaded, 0.0, f) for f in out)), state
 
 
-def either_way(p: Any, backwards: Any, at: OperatingCondition, switches: Switches) -> tuple[Forces, State]:
+def either_way(
+    p: Any, backwards: Any, at: OperatingCondition, switches: Switches
+) -> tuple[Forces[Any], State[Any]]:
     """The model for either direction: where ``backwards`` holds, in a frame turned by half a revolution about z.
 
     In that frame the wheel rolls forwards and is turned on its rim.
@@ -88,7 +90,7 @@ def either_way(p: Any, backwards: Any, at: OperatingCondition, switches: Switche
     return out, state._replace(omega=turned * state.omega, phi=turned * state.phi)
 
 
-def loaded_radius(p: Any, at: OperatingCondition, out: Forces, state: State) -> Any:
+def loaded_radius(p: Any, at: OperatingCondition, out: Forces[Any], state: State[Any]) -> Any:
     """Loaded radius [m] of a wheel with these forces and this state at an operating condition."""
     rim_speed = np.abs(state.omega) * p.UNLOADED_RADIUS / p.LONGVL
     dpi = at.pressure / p.NOMPRES - 1.0

@@ -14,7 +14,7 @@ from inspect import Parameter, Signature
 from numbers import Complex
 from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
-from typing import Any, NamedTuple, Self
+from typing import Any, Literal, NamedTuple, Self, overload
 
 import numpy as np
 
@@ -26,6 +26,8 @@ from tir.inputs import records, way_for
 from tir.mode import asks_for_turn_slip, warn, warn_of_doubt
 from tir.parameters import BY_NAME, TABLE
 
+TextKey = Literal["TYRESIDE", "PROPERTY_FILE_FORMAT"]
+"""Parameters of the table that are text; all others are numbers."""
 EMPTY: Mapping[str, Any] = MappingProxyType({})
 
 
@@ -63,6 +65,12 @@ class TyreRecord:
         """
         _usable(given)
         return cls(MappingProxyType(completed(given)), frozenset(given))
+
+    @overload
+    def __getitem__(self, name: TextKey) -> str: ...  # type: ignore[overload-overlap]  # other names are those of numbers
+
+    @overload
+    def __getitem__(self, name: str) -> float: ...
 
     def __getitem__(self, name: str) -> Any:
         try:

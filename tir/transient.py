@@ -52,7 +52,7 @@ def step(
     damping: float = 0.0,
     turn_slip: bool | None = None,
     limits: bool = False,
-) -> tuple[Contact, Forces]:
+) -> tuple[Contact, Forces[Any]]:
     """The contact after ``dt``, and the forces there.
 
     Parameters
@@ -102,7 +102,7 @@ def forces(
     damping: float = 0.0,
     turn_slip: bool | None = None,
     limits: bool = False,
-) -> Forces:
+) -> Forces[Any]:
     """The forces [N] and moments [Nm] of a deflected contact; arguments as in :func:`step`."""
     lag, inputs = _lag(tyre, (Fz, Vx, Vsx, Vsy, gamma, phi_t, p, damping), turn_slip, limits)
     return _forces(lag, contact, inputs)
@@ -117,5 +117,5 @@ def _lag(
     return lag, (*moving, 0.0 if phi_t is None else phi_t, tyre["INFLPRES"] if p is None else p, damping)
 
 
-def _forces(lag: ContactLag, contact: Contact, inputs: tuple[Any, ...]) -> Forces:
+def _forces(lag: ContactLag, contact: Contact, inputs: tuple[Any, ...]) -> Forces[Any]:
     return Forces(*lag.deflected(*contact, *inputs)[: len(Forces._fields)])

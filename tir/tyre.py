@@ -9,7 +9,7 @@ from dataclasses import FrozenInstanceError
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Never, Self
+from typing import TYPE_CHECKING, Any, Never, Self, overload
 
 from tir import calls
 from tir.codegen.arrays import array_function
@@ -25,7 +25,12 @@ from tir.temperature import at_temperature
 from tir.writing import content, replace_file
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
     from tir.drawing import Figure
+
+    Floats = NDArray[np.float64]
 
 
 class Tyre(TyreRecord):
@@ -111,6 +116,38 @@ class Tyre(TyreRecord):
         """
         return at_temperature(self, T_degC)
 
+    @overload
+    def __call__(
+        self,
+        Fz: float,
+        alpha: float = ...,
+        gamma: float = ...,
+        kappa: float = ...,
+        phi_t: float | None = ...,
+        Vx: float | None = ...,
+        p: float | None = ...,
+        *,
+        turn_slip: bool | None = ...,
+        star: bool = ...,
+        limits: bool = ...,
+    ) -> Forces[float]: ...
+
+    @overload
+    def __call__(
+        self,
+        Fz: ArrayLike,
+        alpha: ArrayLike = ...,
+        gamma: ArrayLike = ...,
+        kappa: ArrayLike = ...,
+        phi_t: ArrayLike | None = ...,
+        Vx: ArrayLike | None = ...,
+        p: ArrayLike | None = ...,
+        *,
+        turn_slip: bool | None = ...,
+        star: bool = ...,
+        limits: bool = ...,
+    ) -> Forces[Floats]: ...
+
     def __call__(
         self,
         Fz: Any,
@@ -124,7 +161,7 @@ class Tyre(TyreRecord):
         turn_slip: bool | None = None,
         star: bool = False,
         limits: bool = False,
-    ) -> Forces:
+    ) -> Forces[Any]:
         """Forces and moments in steady state.
 
         Parameters
@@ -161,6 +198,38 @@ class Tyre(TyreRecord):
         switches = Switches(bool(turn_slip), bool(star), bool(limits))
         return calls.forces(self, (Fz, alpha, gamma, kappa, phi_t, Vx, p), switches)
 
+    @overload
+    def state(
+        self,
+        Fz: float,
+        alpha: float = ...,
+        gamma: float = ...,
+        kappa: float = ...,
+        phi_t: float | None = ...,
+        Vx: float | None = ...,
+        p: float | None = ...,
+        *,
+        turn_slip: bool | None = ...,
+        star: bool = ...,
+        limits: bool = ...,
+    ) -> State[float]: ...
+
+    @overload
+    def state(
+        self,
+        Fz: ArrayLike,
+        alpha: ArrayLike = ...,
+        gamma: ArrayLike = ...,
+        kappa: ArrayLike = ...,
+        phi_t: ArrayLike | None = ...,
+        Vx: ArrayLike | None = ...,
+        p: ArrayLike | None = ...,
+        *,
+        turn_slip: bool | None = ...,
+        star: bool = ...,
+        limits: bool = ...,
+    ) -> State[Floats]: ...
+
     def state(
         self,
         Fz: Any,
@@ -174,7 +243,7 @@ class Tyre(TyreRecord):
         turn_slip: bool | None = None,
         star: bool = False,
         limits: bool = False,
-    ) -> State:
+    ) -> State[Any]:
         """The other results at the condition: stiffnesses, radius, trail, spin; arguments as in a call.
 
         Returns

@@ -2,52 +2,55 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from tir.equations import aligning, lateral, longitudinal, overturning, rolling, stiffness, turn_slip
 from tir.equations.elementary import absolute
 from tir.equations.normalise import Inputs, camber_reduction, total_spin
 
+Value = TypeVar("Value")
+"""Of a result: a float, an array, a number of another kind."""
 
-class Forces(NamedTuple):
+
+class Forces(NamedTuple, Generic[Value]):
     """Forces [N] and moments [Nm] on the wheel in the contact frame W; scalars or arrays of the inputs' shape."""
 
-    Fx: Any
-    Fy: Any
-    Fz: Any
-    Mx: Any
-    My: Any
-    Mz: Any
+    Fx: Value
+    Fy: Value
+    Fz: Value
+    Mx: Value
+    My: Value
+    Mz: Value
 
 
-class State(NamedTuple):
+class State(NamedTuple, Generic[Value]):
     """All other results of the model at the operating condition."""
 
-    K_xk: Any  #: longitudinal slip stiffness [N]
-    K_ya: Any  #: cornering stiffness at this load, camber, pressure and spin [N/rad], negative for a normal tyre
-    K_yg0: Any  #: camber stiffness at zero camber, normal mode [N/rad], negative for a normal tyre
-    mu_x: Any  #: longitudinal friction coefficient [-]
-    mu_y: Any  #: lateral friction coefficient [-]
-    sigma_x: Any  #: longitudinal relaxation length [m]
-    sigma_y: Any  #: lateral relaxation length [m]
-    Re: Any  #: effective rolling radius [m]
-    omega: Any  #: speed of rotation [rad/s]
-    trail: Any  #: pneumatic trail [m]
-    residual_torque: Any  #: Mzr [Nm]
-    S_Hy: Any  #: horizontal shift of the side-force curve [rad]
-    S_Vy: Any  #: vertical shift of the side-force curve [N]
-    eps_gamma: Any  #: camber reduction factor [-]
-    phi: Any  #: total spin [1/m]
-    S_Hyphi: Any  #: shift of the side-force curve by spin [rad]
-    zeta0: Any  #: to zeta8: factors by which spin changes the Magic Formula [-]; 1 without turn slip
-    zeta1: Any
-    zeta2: Any
-    zeta3: Any
-    zeta4: Any
-    zeta5: Any
-    zeta6: Any
-    zeta7: Any
-    zeta8: Any
+    K_xk: Value  #: longitudinal slip stiffness [N]
+    K_ya: Value  #: cornering stiffness at this load, camber, pressure and spin [N/rad], negative for a normal tyre
+    K_yg0: Value  #: camber stiffness at zero camber, normal mode [N/rad], negative for a normal tyre
+    mu_x: Value  #: longitudinal friction coefficient [-]
+    mu_y: Value  #: lateral friction coefficient [-]
+    sigma_x: Value  #: longitudinal relaxation length [m]
+    sigma_y: Value  #: lateral relaxation length [m]
+    Re: Value  #: effective rolling radius [m]
+    omega: Value  #: speed of rotation [rad/s]
+    trail: Value  #: pneumatic trail [m]
+    residual_torque: Value  #: Mzr [Nm]
+    S_Hy: Value  #: horizontal shift of the side-force curve [rad]
+    S_Vy: Value  #: vertical shift of the side-force curve [N]
+    eps_gamma: Value  #: camber reduction factor [-]
+    phi: Value  #: total spin [1/m]
+    S_Hyphi: Value  #: shift of the side-force curve by spin [rad]
+    zeta0: Value  #: to zeta8: factors by which spin changes the Magic Formula [-]; 1 without turn slip
+    zeta1: Value
+    zeta2: Value
+    zeta3: Value
+    zeta4: Value
+    zeta5: Value
+    zeta6: Value
+    zeta7: Value
+    zeta8: Value
 
 
 class Wheel(NamedTuple):
@@ -60,7 +63,7 @@ class Wheel(NamedTuple):
     Re: Any  #: effective rolling radius [m]
 
 
-def evaluate(p, q: Inputs, wheel: Wheel, with_turn_slip: bool) -> tuple[Forces, State]:
+def evaluate(p, q: Inputs, wheel: Wheel, with_turn_slip: bool) -> tuple[Forces[Any], State[Any]]:
     """Steady-state MF 6.2 of a wheel that rolls forwards.
 
     Parameters
