@@ -27,6 +27,9 @@ def _better(config: Config, points: Points, measured: Measured) -> Iterator[str]
     """What would narrow the bands of the road after runs on one side of a disc."""
     if not config.rig.on_disc:
         return
+    if points.one_sided and config.tyre.side != "symmetric":
+        # One side of a disc does not tell ply-steer, conicity and a torque of the tyre's own from turn slip.
+        yield 'side = "symmetric" if the tyre is'
     if not config.tyre.base:
         yield "a like tyre's file as base"
     camber = unspun(points, measured)

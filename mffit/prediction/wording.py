@@ -44,15 +44,15 @@ def road_sentences(road: OnRoad, normal: str = "") -> list[str]:
     if road.missed:
         posture, missed = [*road.missed.items()][-1]
         off = [
-            f"{number(one.rms, digits=2)} {CHANNELS[name].unit} ({number(100.0 * one.share, digits=2)} % of the peak)"
-            for name, one in missed.items()
+            f"{number(one.rms, digits=2)} {CHANNELS[name].unit} ({number(100.0 * one.share, digits=2)} %{' of the peak' if k == 0 else ''})"
+            for k, (name, one) in enumerate(missed.items())
         ]
         lean = (
             f" by {number(math.degrees(road.curves[posture].camber), 0)} deg" if posture == "leaned" else ""
         )
         sentences.append(f"{normal} misses the road by {listed(off)} rms when {posture}{lean}.")
     if road.better:
-        sentences.append(f"The road would be better known by {', or '.join(road.better)}.")
+        sentences.append(f"It is better known with {', or '.join(road.better)}.")
     return [ascii_only(sentence) for sentence in sentences]
 
 

@@ -142,6 +142,21 @@ def test_what_would_help_names_the_camber_without_spin(built):
     assert camber_of_no_spin(-1.0, 0.3, 0.9) is None
 
 
+def test_a_tyre_that_is_declared_symmetric_is_better_known_on_the_road(built, tmp_path):
+    """On one side of a disc, a torque of the tyre's own cannot be told from the moment of turn slip."""
+    path = disc_of_a_brush(tmp_path / "tyre", TYRE)
+    path.write_text(path.read_text().replace("[tyre]", '[tyre]\nside = "symmetric"'))
+    road = build(path).result.road
+    before = built.result.road
+    assert road.upright.half_width("Mz") < 0.9 * before.upright.half_width("Mz")
+    assert any("symmetric" in text for text in before.better)
+    assert not any("symmetric" in text for text in road.better)
+    true, _ = TYRE.forces(
+        road.upright.sideslip, 0.0 * road.upright.sideslip, 0.0 * road.upright.sideslip + road.load
+    )
+    assert np.mean(np.abs(road.upright.best["Fy"] - true) < 1.96 * road.upright.u["Fy"]) > 0.9
+
+
 def test_result_json_states_the_road(built):
     content = json.loads((built.folder / "result.json").read_text())["road"]
     road = built.result.road
