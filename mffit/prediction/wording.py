@@ -43,9 +43,10 @@ def road_sentences(road: OnRoad, normal: str = "") -> list[str]:
     sentences = []
     if road.missed:
         posture, missed = [*road.missed.items()][-1]
+        of = [" of the peak", *[""] * len(missed)]
         off = [
-            f"{number(one.rms, digits=2)} {CHANNELS[name].unit} ({number(100.0 * one.share, digits=2)} %{' of the peak' if k == 0 else ''})"
-            for k, (name, one) in enumerate(missed.items())
+            f"{number(one.rms, digits=2)} {CHANNELS[name].unit} ({number(100.0 * one.share, digits=2)} %{peak})"
+            for (name, one), peak in zip(missed.items(), of, strict=False)
         ]
         lean = (
             f" by {number(math.degrees(road.curves[posture].camber), 0)} deg" if posture == "leaned" else ""
