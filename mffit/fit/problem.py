@@ -16,6 +16,7 @@ from mffit.fit import constants, weights
 from mffit.fit.constraints import Envelope, limits
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.rig.rig_numbers import known_faults, known_zeros
+from mffit.fit.second_hand import by_force_read
 from mffit.fit.wheel.rolling import effective_radius
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, condensed
 from mffit.linearised.inputs import places
@@ -131,7 +132,10 @@ class FitProblem(ReadOnlyArrays):
         out = {}
         for name, sigma in self.sigma.items():
             measured = np.nan_to_num(self.points.channel(name))
-            out[name] = np.where(self._used(name), (readings[name] - measured) / sigma, 0.0)
+            model = readings[name]
+            if name == "Mx" and "Fy" in self.sigma:
+                model, _ = self._at_second_hand((), np.arange(len(self.points)), readings)
+            out[name] = np.where(self._used(name), (model - measured) / sigma, 0.0)
         return out
 
     def free(self, names: Sequence[str]) -> LeastSquaresProblem:
@@ -165,9 +169,24 @@ class FitProblem(ReadOnlyArrays):
             for k, (name, sigma) in enumerate(self.sigma.items()):
                 measured, u = self.points.channel(name)[which], sigma[which]
                 used = np.isfinite(u) & np.isfinite(measured)
-                data[k] = np.where(used, (readings[name] - np.nan_to_num(measured)) / u, 0.0)
-                np.multiply(by_channel[name].T, used / u, out=slopes[:, k])
+                model, slope = readings[name], by_channel[name]
+                if name == "Mx" and "Fy" in self.sigma:
+                    model, slope = self._at_second_hand(names, rows, readings, by_channel)
+                data[k] = np.where(used, (model - np.nan_to_num(measured)) / u, 0.0)
+                np.multiply(slope.T, used / u, out=slopes[:, k])
             yield rows, data.ravel(), slopes.reshape(len(names), -1).T
+
+    def _at_second_hand(
+        self, names: Sequence[str], rows: np.ndarray, readings: Readings, by_channel: Readings | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Mx (m,) and its derivatives (m, k), with the side force as read where it has a weight."""
+        part, read = self.points.select(rows, with_table=False), self._used("Fy")[rows]
+        part = part.replace(Fy=np.where(read, part.Fy, readings.Fy))
+        change, by_number, by_force = by_force_read(self.simulation, part, readings.Fy, names)
+        if by_channel is None:
+            return readings.Mx + change, by_number
+        of_Fy = (read * by_force)[:, None] * by_channel.Fy
+        return readings.Mx + change, by_channel.Mx + by_number + of_Fy
 
     def rows(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
         """Residuals (c n + r,) and their derivatives, channel by channel, then of the measured radii."""

@@ -49,6 +49,32 @@ def test_the_misfit_is_in_units_of_the_uncertainty(problem):
     assert off == pytest.approx(expected)
 
 
+def test_the_side_force_in_Mx_is_the_one_that_was_read(problem):
+    """A wrong cornering stiffness leaves Mx where it is, and no Mx asks for another one; without a reading of Fy it does."""
+    tyre = truth().replace(QSX1=0.01, QSX2=0.4, QSX3=0.05, QSX13=0.02)
+    Mx = Simulation.of(tyre).readings(problem.points, ["Mx"]).Mx
+    sigma = {**problem.sigma, "Mx": np.full(N, 2.0)}
+    simulation = Simulation({**tyre.values, "PKY1": 1.3 * tyre["PKY1"], "QSX1": 0.02}, NO_FAULTS)
+    off = replace(problem, points=problem.points.replace(Mx=Mx), simulation=simulation, sigma=sigma, radii=())
+    rows = np.arange(N) != 5  # where Fy has no weight
+    R0, load = tyre["UNLOADED_RADIUS"], problem.points.Fz
+    misfit = off.misfit()
+    assert np.max(np.abs(misfit["Fy"])) > 10.0
+    assert misfit["Mx"][rows] == pytest.approx((R0 * load * 0.01 / 2.0)[rows], rel=1e-6)
+    names = ["PKY1", "QSX3", "QSX13", "F0_N"]
+    residual, slope = off.rows(names)
+    of_Mx = list(off.sigma).index("Mx") * N + np.arange(N)
+    assert residual[of_Mx] == pytest.approx(misfit["Mx"])
+    assert np.max(np.abs(slope[of_Mx, 0][rows])) < 1e-9 * np.abs(tyre["PKY1"])
+    assert abs(slope[of_Mx[5], 0]) > 1e-4
+    Fy = problem.points.Fy
+    assert slope[of_Mx, 1][rows] == pytest.approx((R0 * load / tyre["FNOMIN"] * Fy / 2.0)[rows])
+    for k, name in enumerate(names):
+        step = 1e-4
+        up, down = (off.with_values({name: off.value(name) + s}).misfit()["Mx"] for s in (step, -step))
+        assert slope[of_Mx, k] == pytest.approx((up - down) / (2.0 * step), rel=1e-4, abs=1e-6)
+
+
 def test_a_measured_radius_counts_as_a_reading(problem):
     """A radius from a revolution of the disc is proportional to the path radius; a given one is not."""
     Re = problem.simulation.values, truth().state(np.array([900.0, 2100.0]), Vx=6.0).Re

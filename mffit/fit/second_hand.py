@@ -1,0 +1,41 @@
+"""Mx with the side force as read: what the formula misses of Mx must not bend the side force, which is measured itself."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import SimpleNamespace
+
+import numpy as np
+
+from mffit.points import Points
+from mffit.rig import Simulation
+from mffit.rig_errors import BY_NAME as BY_ERROR
+from tir.derivatives import gradient, plain, traced
+from tir.equations import normalise, overturning
+from tir.parameters import BY_NAME
+
+SIDE_FORCE, ARM, PRESSURE = "Fy", "k_p_arm_per_kPa", "p_ref_kPa"
+
+
+def by_force_read(
+    simulation: Simulation, points: Points, force: np.ndarray, names: Sequence[str]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Change of Mx (n,) [Nm] if the side force is that of ``points`` and not the model's ``force`` (n,) [N].
+
+    Also its derivatives (n, k) by the named numbers at a given ``force``, and those (n,) by the force.
+    """
+    own = [name for name in names if name == ARM or (name in BY_NAME and BY_NAME[name].channel == "Mx")]
+    at = traced({**{name: simulation.number(name, points) for name in own}, SIDE_FORCE: force})
+    values = {**simulation.values, **{name: at[name] for name in own if name != ARM}}
+    reference = simulation.number(PRESSURE, points)
+    if not np.isnan(reference):
+        (arm,) = BY_ERROR[ARM].acts_on
+        k = at.get(ARM, simulation.number(ARM, points))
+        values[arm] = values[arm] + k * (1e-3 * points.p - reference)
+    p = SimpleNamespace(**values)
+    q = normalise.inputs(p, normalise.OperatingCondition(points.Fz, gamma=points.gamma, pressure=points.p))
+    read, model = (overturning.moment(p, q, points.Fz, Fy) for Fy in (points.Fy, at[SIDE_FORCE]))
+    by_number = np.zeros((len(points), len(names)))
+    slopes = gradient(read - model, list(at.values()))
+    by_number[:, [names.index(name) for name in own]] = slopes[:, :-1]
+    return np.asarray(plain(read - model)), by_number, slopes[:, -1]
