@@ -7,11 +7,14 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from mffit.as_json import Json, document
+from mffit.config import Config
 from mffit.config.by_hand import may_be_free, unsettable
 from mffit.fit import Coefficient, FitResult, name_at_temperature
 from mffit.fit.agreement import with_points
 from mffit.fit.influences.modelled import without_runs
+from mffit.points.loading import Reading
 from mffit.quantities import CHANNELS
+from mffit.report.verdict import judgement, verdict
 from mffit.results import BuildResult
 from mffit.rig import SIMULATED
 from mffit.viewer import constants
@@ -47,8 +50,10 @@ def project_data(result: BuildResult) -> dict[str, Json]:
             "hand": result.config.hand,
             "exclude": result.config.fit.exclude,
             "inputs": result.made.inputs,
+            "verdict": verdict(result),
+            "judgement": judgement(result),
             "trusted": result.trusted,
-            "warnings": result.warnings,
+            "warnings": [*result.reasons, *result.warnings],
             "seconds": result.seconds,
             "others": [
                 {
@@ -58,6 +63,32 @@ def project_data(result: BuildResult) -> dict[str, Json]:
                 }
                 for title, other in others
             ],
+        }
+    )
+
+
+def readings_data(config: Config, reading: Reading) -> dict[str, Json]:
+    """What the page shows of a project before its first fit: the keys of :func:`project_data` with readings and no model."""
+    return document(
+        {
+            "name": config.tyre.name,
+            "title": "",
+            "order": INPUTS,
+            "turn_slip": config.rig.on_disc,
+            "star": False,
+            "quantities": {name: on_page(quantity) for name, quantity in axis_quantities().items()},
+            "channels": [],
+            "values": {},
+            "conicity": [],
+            "coefficients": [],
+            "points": columns(reading.points, reading.excluded, None),
+            "hand": config.hand,
+            "exclude": config.fit.exclude,
+            "verdict": "",
+            "judgement": "",
+            "trusted": True,
+            "warnings": [],
+            "others": [],
         }
     )
 

@@ -16,7 +16,7 @@ from mffit.rig import Simulation
 from mffit.viewer import constants
 from mffit.viewer.controls import in_si
 from mffit.viewer.packing import packed, rounded
-from tir.codegen.program import INPUTS
+from tir.codegen.program import INPUTS, LOADED
 
 MEASURED_ONLY = {"T": CONDITIONS["T_degC"], "t": CONDITIONS["t_s"]}
 """Conditions of points that are not inputs of the model."""
@@ -28,7 +28,8 @@ BITS_OF_BANDS = 12
 
 def axis_quantities() -> dict[str, QuantityName]:
     """Everything that an axis of the page can show, except residuals."""
-    return {name: MODEL[name] for name in INPUTS} | MEASURED_ONLY | dict(CHANNELS)
+    radius = {LOADED: CHANNELS[LOADED]._replace(unit="mm")}
+    return {name: MODEL[name] for name in INPUTS} | MEASURED_ONLY | CHANNELS | radius
 
 
 def delivered(fitted: FitResult) -> Simulation:
@@ -36,15 +37,16 @@ def delivered(fitted: FitResult) -> Simulation:
     return replace(fitted.simulation, values=dict(fitted.tyre.values))
 
 
-def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[str, object]:
+def columns(points: Points, excluded: Points | None, fitted: FitResult | None) -> dict[str, object]:
     """The points as the tyre felt them, by column, with what the rig read; then those that are left out by hand.
 
     Conditions and readings are in SI; missing readings are NaN, and channels without a reading are left out. ``shift`` is what
     the rig read beyond what the tyre felt, of the columns that differ; ``more`` the lines of a point after its first.
-    ``fitted`` is the number of points that the fit has.
+    ``fitted`` is the number of points that the fit has. Before the fit, None, the readings are shown as they are.
     """
     read, at_tyre = _read_and_felt(points, excluded, fitted)
     groups, levels_of = facets(read)
+    outliers = () if fitted is None else fitted.outliers
     named = {
         "u": {
             name: np.where(stating(points.u(name)), points.u(name), np.nan)
@@ -52,7 +54,7 @@ def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[
             if stating(points.u(name)).any()
         },
         "unused": {
-            name: np.array(sorted(o.row for o in fitted.outliers if o.channel == name), dtype=int)
+            name: np.array(sorted(o.row for o in outliers if o.channel == name), dtype=int)
             for name in read.measured
         },
         "of": levels_of,
@@ -86,9 +88,15 @@ def differing(
     )
 
 
-def _read_and_felt(points: Points, excluded: Points | None, fitted: FitResult) -> tuple[Points, Points]:
-    parts, simulation = [points] if excluded is None else [points, excluded], delivered(fitted)
-    return concatenate(parts), concatenate([simulation.felt(part) for part in parts])
+def _read_and_felt(
+    points: Points, excluded: Points | None, fitted: FitResult | None
+) -> tuple[Points, Points]:
+    parts = [points] if excluded is None else [points, excluded]
+    read = concatenate(parts)
+    if fitted is None:
+        return read, read
+    simulation = delivered(fitted)
+    return read, concatenate([simulation.felt(part) for part in parts])
 
 
 def _felt(read: Points, at_tyre: Points) -> dict[str, np.ndarray]:
@@ -98,12 +106,12 @@ def _felt(read: Points, at_tyre: Points) -> dict[str, np.ndarray]:
     return own | {f"shift.{name}": column for name, column in shift.items()}
 
 
-def _bands(felt: Points, n: int, fitted: FitResult) -> dict[str, dict[str, np.ndarray]]:
+def _bands(felt: Points, n: int, fitted: FitResult | None) -> dict[str, dict[str, np.ndarray]]:
     """At some of the first n points, by channel: the model error, and the half width of the 95 % band around both.
 
     They change smoothly, so that :data:`~mffit.viewer.constants.POINTS_OF_BANDS` points spread over all are enough.
     """
-    if fitted.prediction is None:
+    if fitted is None or fitted.prediction is None:
         return {}
     rows = np.unique(np.linspace(0, n - 1, min(n, constants.POINTS_OF_BANDS)).astype(int))
     tyre = Simulation.of(fitted.tyre, turn_slip=fitted.simulation.turn_slip)

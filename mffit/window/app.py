@@ -186,7 +186,7 @@ def window_app(
     answers = Answers(opened, closing)
     shown: dict[str, Callable[[], Any]] = {
         "recordings": lambda: plain(opened.of_folder("table")),
-        "project": lambda: opened.session.data,
+        "project": lambda: opened.session.data or opened.session.readings,
         "settings": lambda: opened.session.settings(),
         "state": lambda: opened.session.state(),
     }

@@ -49,6 +49,7 @@ RUNS = ("fit", *PAGES)
 def carry_out(kind: str, path: Path, progress: Progress) -> dict[str, Any] | None:
     """Run it in this process; returns what the page shows of a fit or a build."""
     from mffit import config, pipeline, viewer
+    from mffit.pipeline.inputs import read_points
     from mffit.report import text
 
     out = out_of(path)
@@ -56,6 +57,9 @@ def carry_out(kind: str, path: Path, progress: Progress) -> dict[str, Any] | Non
         case "fit" | "build":
             written = out if kind == "build" else None
             return viewer.project_data(pipeline.build(path, written, progress=progress))
+        case "points":
+            settings = config.load(path)
+            return viewer.readings_data(settings, read_points(settings))
         case "diagnose":
             pipeline.diagnose(path, out=out / "diagnosis", progress=progress)
         case "plan":

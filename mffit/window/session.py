@@ -193,10 +193,12 @@ class Session:
         self.file = ProjectFile(path)
         self.data: dict[str, Any] | None = None  #: of the last fit, for the page
         self.fits = 0  #: finished fits
+        self.readings: dict[str, Any] | None = None  #: for the page until the first fit ends
         self.last: RunOutcome | None = None  #: of the last run
         self._seen: tuple[str | None, str, Config | None] = (None, "", None)
         self._fitted = ""  #: digest of the tyre.toml of the last fit
         self._run: Run | None = None
+        self._first: Run | None = None  #: by which the readings are shown before the first fit
         self._news: dict[str, Any] | None = None  #: what new recordings say, for the page
         self._reading: Run | None = None  #: by which they are read
         self._recordings = self._there()  #: when they were read
@@ -213,6 +215,7 @@ class Session:
                 "digest": now,
                 "is_fitted": self._fitted == now and config is not None and self._is_of(config),
                 "fits": self.fits,
+                "has_readings": self.readings is not None,
                 "problem": problem,
                 "hand": {} if config is None else config.hand,
                 "exclude": [] if config is None else [entry.model_dump() for entry in config.fit.exclude],
@@ -258,12 +261,14 @@ class Session:
             if self._run is not None:
                 raise InputError("another run is under way; stop it first")
             self.last = None
+            if self.data is None and self.readings is None:
+                self._first = Run("points", self.file.path, "")
             self._run = Run(kind, self.file.path, self.file.digest)
 
     def stop(self) -> None:
         """End the run that is under way."""
         with self._lock:
-            runs = self._run, self._reading
+            runs = self._run, self._first, self._reading
         for run in runs:
             if run is not None:
                 run.stop()
@@ -286,6 +291,8 @@ class Session:
 
     def _collect(self) -> None:
         """Take the outcome of a run that has ended."""
+        if self._first is not None and self._first.outcome is not None:
+            self.readings, self._first = self._first.outcome.data, None
         if self._run is None or self._run.outcome is None:
             return
         run, self._run = self._run, None

@@ -1,19 +1,38 @@
 // The list of coefficients: fields and sliders that act at once, and buttons that write tyre.toml.
 import {byId, details, element, key, tell} from "./dom.js";
-import {coefficient, hooks, project, rows, trial} from "./model.js";
+import {RESIDUAL, coefficient, hooks, project, rows, state, trial} from "./model.js";
 import {trimmed, written} from "./text.js";
 
 export const cells = {};
+let listed = null;  // the project whose coefficients are listed
+// Place of a coefficient: of the first shown channel that uses it, then of how many channels do; channels' own come first.
+function usedFirst() {
+  const shown = [...new Set(state.panels.map(panel => panel.y.replace(RESIDUAL, "")))]
+    .map(name => project.channels.find(one => one.name === name)).filter(Boolean);
+  const place = name => {
+    const first = shown.findIndex(one => one.uses.includes(name));
+    return first < 0 ? Infinity : first + project.channels.filter(one => one.uses.includes(name)).length / 100;
+  };
+  return Object.fromEntries(rows.map(row => [row.name, place(row.name)]));
+}
+// Groups that the pictures use come first; others are closed at first.
 export function listCoefficients() {
-  const home = byId("coefficients"),
+  const home = byId("coefficients"), place = usedFirst(),
     open = new Set([...home.querySelectorAll("details[open]")].map(one => one.dataset.key));
-  const first = !home.children.length;
+  const first = !home.children.length, nearest = group =>
+    Math.min(...rows.filter(row => row.group === group && row.found).map(row => place[row.name]));
+  const groups = [...new Set(rows.map(row => row.group))].map(group => [nearest(group), group])
+    .sort(([one], [other]) => one === other ? 0 : one - other);
+  const order = groups.map(([, group]) => group).join();
+  if (home.dataset.order === order && listed === project) return;
+  Object.assign(home.dataset, {order});
+  listed = project;
   home.replaceChildren();
   for (const name in cells) delete cells[name];
-  for (const group of new Set(rows.map(row => row.group))) {
+  for (const [at, group] of groups) {
     const members = rows.filter(row => row.group === group), found = members.filter(row => row.found),
       rest = members.filter(row => !row.found);
-    const box = details(home, group, `${group}`, first ? found.length > 0 : open.has(group));
+    const box = details(home, group, `${group}`, first ? found.length > 0 && at < Infinity : open.has(group));
     for (const row of found) box.append(coefficientRow(row));
     if (rest.length) {
       const key = `${group}-rest`,

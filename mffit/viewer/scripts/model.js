@@ -253,7 +253,7 @@ export function defaultPanels() {
   const fitted = project.channels.filter(one => one.of_fit).map(one => one.name),
     others = project.points.measured.filter(name => !fitted.includes(name));
   const levels = name => facet(name).labels.length;
-  const over = name => !channels.includes(name) ? "Fz"
+  const over = name => channels.length && !channels.includes(name) ? "Fz"
     : axisKnown("kappa") && (name === "Fx" || levels("kappa") > levels("alpha")) ? "kappa" : "alpha";
   const further = name =>
     SWEPT.filter(x => name !== "Fx" && over(name) !== "Fz" && over(name) !== x && sweptOver().includes(x));

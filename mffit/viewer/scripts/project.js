@@ -242,7 +242,7 @@ function addPanel({x, y}) {
     for (const name of options[axis]) select.append(new Option(label(name), name, false, name === panel[axis]));
     panel[axis] = select.value;
     select.addEventListener("change",
-      () => { panel[axis] = select.value; panel.box = null; look(panel, null); remember(); });
+      () => { panel[axis] = select.value; panel.box = null; look(panel, null); remember(); listCoefficients(); });
     caption.append(...(axis === "x" ? [element("span", "on-screen", "over "), select] : [select]));
   }
   const close = key("×", "remove this picture", () => {
@@ -250,6 +250,7 @@ function addPanel({x, y}) {
     figure.remove();
     seen.unobserve(panel.canvas);
     remember();
+    listCoefficients();
   });
   const more = element("details", "more"), menu = element("div", "");
   more.append(element("summary", "", "⋯"), menu);
@@ -422,9 +423,11 @@ export async function showProject(data) {
   listCoefficients();
   const fit = project.channels.filter(one => one.of_fit).map(one =>
     `${one.name} ${written(one.rmse)} ${quantity(one.name).unit}`).join(", ");
-  const which = data.others.length ? `${state.fit}: ` : "";
-  const doubt = project.trusted ? "" : "; the result is not to be trusted";
-  byId("about").textContent = `${which}${project.points.fitted} points, rms misfit ${fit}${doubt}`;
+  byId("content").classList.toggle("before", !channels.length);
+  byId("verdict").textContent = project.verdict;
+  byId("verdict").className = project.judgement;
+  byId("about").textContent = !channels.length ? `${project.points.fitted} points; the fit is under way`
+    : data.others.length ? `${state.fit}: rms misfit ${fit}` : "";
   const said = project.warnings, box = byId("warnings");
   box.hidden = !said.length;
   box.open = !project.trusted;
@@ -471,7 +474,7 @@ export async function begin(given) {
     for (const other of TOOLS) byId(other).setAttribute("aria-pressed", other === pressed);
     byId("panels").classList.toggle("dragging", pressed !== "");
   });
-  byId("add").addEventListener("click", () => { addPanel(defaultPanels()[0]); remember(); update(); });
+  byId("add").addEventListener("click", () => { addPanel(defaultPanels()[0]); remember(); update(); listCoefficients(); });
   addEventListener("resize", update);
   whenPrinted(() => {
     for (const {title, x, y} of state.panels) title.textContent = `${label(y)} over ${label(x)}`;

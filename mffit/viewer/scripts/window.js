@@ -156,7 +156,7 @@ function setLive(state) {
   live = state;
   showSettings();
   if (!live.can_undo) dropMoves(one => !one.trial);  // another program has changed the file since
-  if (live.fits !== shownFit && live.fits > 0) return bring();
+  if (live.fits !== shownFit && (live.fits > 0 || live.has_readings)) return bring();
   if (project) {
     project.hand = live.hand;
     project.exclude = live.exclude;
@@ -175,7 +175,7 @@ async function bring() {
   fetching = false;
   if (!data || data.error) return showStatus();
   if (project && (data.turn_slip !== project.turn_slip || data.star !== project.star)) return location.reload();
-  if (shownFit >= 0) {  // a new fit: what the sliders tried is over
+  if (shownFit > 0) {  // a new fit: what the sliders tried is over
     setTrial({});
     dropMoves(one => one.trial);
     remember();
@@ -198,9 +198,12 @@ function showNews() {
 function showStatus() {
   showNews();
   byId("refit").disabled = hasEnded() || !!live.run;
+  byId("refit").textContent = live.fits ? "Refit" : "Fit";
+  byId("refit").hidden = !live.fits && !!live.run;
   byId("refit").classList.toggle("main", !live.is_fitted && !live.run);
   byId("stop").hidden = hasEnded() || !live.run;
   byId("undo").disabled = !moves.length && !live.can_undo;
+  byId("undo").hidden = !live.fits && byId("undo").disabled;
   showLinks();
   if (hasEnded()) return say(ENDED, true);
   if (live.problem) return say(live.problem, true);
@@ -214,7 +217,7 @@ function showStatus() {
 function showLinks() {
   const parts = [];
   byId("add-recordings").hidden = hasEnded();
-  for (const page of hasEnded() ? [] : live.pages) {
+  for (const page of hasEnded() ? [] : live.pages.filter(one => one.href || live.fits)) {
     const part = document.createElement("span");
     if (page.href) {
       const link = Object.assign(document.createElement("a"),
@@ -227,7 +230,7 @@ function showLinks() {
     const make = key(page.href ? "again" : `Make: ${page.title.toLowerCase()}`,
       `as mffit ${page.run} on the command line, into out/`, () => post(`run/${page.run}`));
     make.disabled = !!live.run;
-    part.append(make);
+    if (live.fits) part.append(make);
     parts.push(part);
   }
   byId("links").replaceChildren(...parts);

@@ -26,9 +26,11 @@ import mffit
 from mffit.quantities import SIDEWAYS
 from mffit.viewer import project_data, project_html, project_page
 from mffit.viewer.project_points import differing
+from mffit.window.runs import carry_out
 from mffit.window.session import Session
 from tests.browser import PAPER, PHONE, SCREEN, brightness, complaints, console_errors, look, opened, sheets
 
+SHOWN = "!!(window.mffit && mffit.data() && mffit.data().points.line)"
 SIX_DIGITS = 1e-4
 """Agreement [-] of misfits: points have six digits in a page, and a misfit is a hundredth of a force."""
 HOSTILE = "</script><script>window.hacked=1</script><img src=x onerror='window.hacked=1'>"
@@ -51,8 +53,8 @@ def page(browser) -> Any:
 
 
 def shown(browser: Any) -> Any:
-    """The browser once it has unpacked and drawn the points."""
-    until(lambda: ask(browser, "!!(window.mffit && mffit.data() && mffit.data().points.line)"))
+    """The browser once it has unpacked and drawn the points of a fit."""
+    until(lambda: ask(browser, SHOWN) and ask(browser, "mffit.data().coefficients.length > 0"))
     return browser
 
 
@@ -537,6 +539,47 @@ def test_a_server_of_somebody_else_at_the_port_is_asked_nothing(browser, tyre_to
         thread.join()
         foreign.server_close()
     assert "PCY1" not in tyre_toml.read_text(encoding="utf-8")
+
+
+def test_points_are_seen_before_the_first_fit_ends(browser, tyre_toml, result):
+    """Without what works on a fit; then the fit comes with its verdict."""
+    from mffit.window.app import Opened
+
+    session = Session(tyre_toml)
+    visible = lambda css: [e for e in browser.find_elements("css selector", css) if e.is_displayed()]  # noqa: E731
+    with served(Opened(session)) as address:
+        enter(browser, address)
+        assert not visible("#content, #undo, #links button")
+        session.readings = carry_out("points", tyre_toml, lambda sentence: None)
+        until(lambda: ask(browser, SHOWN), 30.0)
+        assert ask(browser, "mffit.data().coefficients") == []
+        assert (
+            ask(browser, "mffit.visible().length") == len(result.points) + 1
+        )  # with the one that is left out
+        assert len(visible("figure.panel")) >= len(result.points.measured)
+        assert not visible("aside, #undo, #links button, #bands, #reading")
+        assert console_errors(browser) == []
+        ask(browser, "mffit.choose(0)")
+        assert visible("#chosen-actions button")
+        session.data, session.fits = mffit.viewer.project_data(result) | {"before": None}, 1
+        shown(browser)
+        assert visible("aside")
+        assert visible("#undo")
+        assert "is sound" in browser.find_element("id", "verdict").text
+        browser.get("about:blank")
+
+
+def test_coefficients_of_the_pictures_come_first(page):
+    """The aligning moment's own before those of the side force, on which it depends, if only it is shown."""
+    groups = "return [...document.querySelectorAll('#coefficients > details')].map(one => one.dataset.key)"
+    before = page.execute_script(groups)
+    assert before.index("Lateral") < before.index("Aligning")
+    while len(page.find_elements("css selector", ".panel .close")) > 1:
+        press(page, ".panel .close")
+    script = "const one = document.querySelector('.panel select'); one.value = 'Mz'; "
+    page.execute_script(script + "one.dispatchEvent(new Event('change'))")
+    after = page.execute_script(groups)
+    assert after.index("Aligning") < after.index("Lateral")
 
 
 def test_each_of_eight_tabs_saves(browser, tyre_toml, result):
