@@ -22,6 +22,9 @@ class LookupTable:
     heading: str  #: of the values, with their unit: ``Fy_N``
     grid: Grid  #: in degrees, N, Nm
     held: Mapping[str, float]  #: the other conditions that tables can have as axes
+    slope: (
+        tuple[float, float] | None
+    )  #: largest relative error found of the slope at zero slip, and its load [N]
 
     @property
     def sentence(self) -> str:
@@ -30,9 +33,16 @@ class LookupTable:
         return (
             f"{self.name}: {' x '.join(str(len(x)) for x in axes.values())} nodes of {', '.join(axes)}"
             f"{''.join(f'; {name} = {value:g}' for name, value in self.held.items())}; linear interpolation misses "
-            f"{100.0 * error:.2f} % of the largest {self.heading} {self.grid.largest:.4g} at most "
-            f"({self.grid.tested} conditions off the nodes)"
+            f"{100.0 * error:.2f} % of the largest {self.heading} {self.grid.largest:.4g}, the largest found at "
+            f"{self.grid.tested} conditions off the nodes{self._of_slope()}"
         )
+
+    def _of_slope(self) -> str:
+        """The error of the slope in words."""
+        if self.slope is None:
+            return ""
+        off, load = self.slope
+        return f"; its slope at zero slip is off by up to {100.0 * off:.1f} %, at {load:.0f} N"
 
     def keys(self) -> dict[str, Any]:
         """The same for programs."""
@@ -44,6 +54,8 @@ class LookupTable:
             f"largest_{self.heading}": self.grid.largest,
             "error": self.grid.error,
             "tested": self.grid.tested,
+            "slope_error": self.slope and self.slope[0],
+            "slope_error_at_N": self.slope and self.slope[1],
         }
 
 

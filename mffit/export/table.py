@@ -13,7 +13,7 @@ from mffit.errors import InputError
 from mffit.export import constants
 from mffit.export.code import mode_suffix
 from mffit.export.forms import FORMS, LookupTable
-from mffit.export.grid import Function, Ranges, grid_of
+from mffit.export.grid import Function, Grid, Ranges, grid_of
 from mffit.output import output_folder
 from mffit.progress import Progress, silent
 from mffit.quantities import column
@@ -26,6 +26,10 @@ CONDITIONS = {"Fz_N": "FZM", "alpha_deg": "ALPM", "gamma_deg": "CAMM", "kappa": 
 SIDEWAYS = ("Fz_N", "alpha_deg", "gamma_deg")
 PURE = {"Fx": ("Fz_N", "gamma_deg", "kappa"), **dict.fromkeys(("Fy", "Mx", "Mz"), SIDEWAYS)}
 """Channels and the axes of their tables in pure slip. My is left out: it depends on speed and jumps where the wheel locks."""
+SLIPS = {"Fx": "kappa", "Fy": "alpha_deg"}
+"""Channels with a slip stiffness, and the axis of the slip."""
+SMALL_STEP = 1e-6
+"""Step of a central difference over the range of the slip."""
 COMBINED = dict.fromkeys(PURE, tuple(CONDITIONS))
 
 
@@ -123,7 +127,8 @@ def _tables(
             warnings.append(f"{name} does not depend on {', '.join(axes)}: no table")
             continue
         held = {axis: 0.0 for axis in CONDITIONS if axis not in axes}
-        tables.append(LookupTable(name, column(channel), grid, held | grid.held))
+        slope = _slope_error(_force(tyre, channel, on), SLIPS.get(channel, ""), grid)
+        tables.append(LookupTable(name, column(channel), grid, held | grid.held, slope))
         if not np.isfinite(grid.largest):
             break
         if grid.error > error:
@@ -135,15 +140,40 @@ def _tables(
     return tables, warnings
 
 
+def _slope_error(force: Function, slip: str, grid: Grid) -> tuple[float, float] | None:
+    """Largest relative error of the table's slope at zero slip, at the loads of its nodes and halfway between, and that load.
+
+    None for a table without zero slip, or without loads.
+    """
+    if slip not in grid.axes or "Fz_N" not in grid.axes:
+        return None
+    nodes, loads = grid.axes[slip], grid.axes["Fz_N"]
+    zero = int(np.argmin(np.abs(nodes)))
+    if nodes[zero] != 0.0:
+        return None
+    upright = {name: float(x[np.argmin(np.abs(x))]) for name, x in grid.axes.items()} | grid.held
+
+    def slope(low: float, high: float, Fz_N: np.ndarray) -> Any:
+        at = {**upright, "Fz_N": Fz_N}
+        return (force(**at | {slip: high}) - force(**at | {slip: low})) / (high - low)
+
+    every = np.unique([*loads[loads > 0.0], *(0.5 * (loads[1:] + loads[:-1]))])
+    step = SMALL_STEP * float(np.ptp(nodes))
+    exact = slope(-step, step, every)
+    sides = [slope(min(0.0, x), max(0.0, x), loads) for x in nodes[max(zero - 1, 0) : zero + 2].tolist() if x]
+    off = np.max([np.abs(np.interp(every, loads, side) / exact - 1.0) for side in sides], axis=0)
+    return float(off.max()), float(every[np.argmax(off)])
+
+
 def _ranges(tyre: tir.Tyre, path: Path, asked: Ranges) -> dict[str, tuple[float, float]]:
-    """The range of each condition: as asked for, or of the file, as far as tyres are used; the lowest load of the file counts."""
+    """The range of each condition: as asked for, or of the file, as far as tyres are used; loads from zero."""
     usual = {low[:-3]: ends for (low, _), ends in zip(RANGES, box(tyre).T, strict=True)}
     for name in asked.keys() - CONDITIONS.keys():
         raise InputError(f"there is no such condition, only {', '.join(CONDITIONS)}", key=f"--range {name}")
     found = {}
     for name, key in CONDITIONS.items():
         scale = np.degrees(1.0) if name.endswith("_deg") else 1.0
-        low, high = max(tyre[f"{key}IN"], 0.0 if key == "FZM" else -np.inf) * scale, tyre[f"{key}AX"] * scale
+        low, high = (0.0 if key == "FZM" else tyre[f"{key}IN"]) * scale, tyre[f"{key}AX"] * scale
         if not low <= high:
             raise InputError(f"{key}IN is above {key}AX: correct the file", file=path)
         if name in asked:
@@ -156,5 +186,5 @@ def _ranges(tyre: tir.Tyre, path: Path, asked: Ranges) -> dict[str, tuple[float,
             found[name] = a, b
         else:
             ends = usual[key[:-1]] * scale
-            found[name] = (low if key == "FZM" else float(ends[0])), float(ends[1])
+            found[name] = (0.0 if key == "FZM" else float(ends[0])), float(ends[1])
     return found

@@ -181,3 +181,24 @@ def test_a_tyre_without_a_force_gets_no_table_of_it_and_an_estimated_one_is_name
     assert "Fy_N" in table
     assert "Fx is estimated" in table.splitlines()[0]
     assert not (tmp_path / "out/a-Fx.csv").exists()
+
+
+def test_the_slope_at_zero_slip_and_the_lowest_load_are_stated(tmp_path):
+    """By interpolation of the written table around zero slip, against the stiffness of the tyre."""
+    found = write_table(CAR, tmp_path, form="csv", ranges={k: x for k, x in NARROW.items() if k != "Fz_N"})
+    tyre = tir.read(CAR)
+    for name, slip, state in (("Fy", "alpha_deg", "K_ya"), ("Fx", "kappa", "K_xk")):
+        (table,) = (one for one in found.tables if one.name == name)
+        axes, (off, load) = table.grid.axes, table.slope
+        assert axes["Fz_N"][0] == 0.0
+        assert f"off by up to {100.0 * off:.1f} %, at {load:.0f} N" in table.sentence
+        ends = np.zeros((2, len(axes)))
+        ends[:, 0], ends[1, [*axes].index(slip)] = load, 1e-3 * axes[slip].max()
+        both = []
+        for side in (1.0, -1.0):
+            ends[1, [*axes].index(slip)] *= side
+            low, high = interpn([*axes.values()], table.grid.values, ends)
+            both.append((high - low) / ends[1, [*axes].index(slip)])
+        scale = 180.0 / np.pi if slip == "alpha_deg" else 1.0
+        wanted = float(getattr(tyre.state(load), state)) / scale
+        assert off == pytest.approx(max(abs(slope / wanted - 1.0) for slope in both), abs=2e-3)
