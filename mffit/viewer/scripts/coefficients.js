@@ -5,7 +5,8 @@ import {trimmed, written} from "./text.js";
 
 export const cells = {};
 let listed = null;  // the project whose coefficients are listed
-// Place of a coefficient: of the first shown channel that uses it, then of how many channels do; channels' own come first.
+// Place of a coefficient: of the first shown channel that uses it, then of how many channels do; those of one channel
+// come first.
 function usedFirst() {
   const shown = [...new Set(state.panels.map(panel => panel.y.replace(RESIDUAL, "")))]
     .map(name => project.channels.find(one => one.name === name)).filter(Boolean);

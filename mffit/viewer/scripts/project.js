@@ -474,7 +474,12 @@ export async function begin(given) {
     for (const other of TOOLS) byId(other).setAttribute("aria-pressed", other === pressed);
     byId("panels").classList.toggle("dragging", pressed !== "");
   });
-  byId("add").addEventListener("click", () => { addPanel(defaultPanels()[0]); remember(); update(); listCoefficients(); });
+  byId("add").addEventListener("click", () => {
+    addPanel(defaultPanels()[0]);
+    remember();
+    update();
+    listCoefficients();
+  });
   addEventListener("resize", update);
   whenPrinted(() => {
     for (const {title, x, y} of state.panels) title.textContent = `${label(y)} over ${label(x)}`;
