@@ -10,6 +10,7 @@ from mffit import viewer
 from mffit.errors import InputError
 from mffit.pipeline.building import build
 from mffit.progress import Progress, silent
+from mffit.report.verdict import judgement, verdict
 from mffit.viewer import Page
 from mffit.viewer.named import Given
 from tir import Tyre
@@ -49,7 +50,8 @@ def show(
     project = _project(tyres)
     if project is None:
         return viewer.show(tyres, out, given=given)
-    page = viewer.project_page(build(project, progress=progress))
+    result = build(project, progress=progress)
+    page = viewer.project_page(result, verdict=verdict(result), judgement=judgement(result))
     if out is not None:
         page.write(out)
     return page

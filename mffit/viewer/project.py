@@ -14,7 +14,6 @@ from mffit.fit.agreement import with_points
 from mffit.fit.influences.modelled import without_runs
 from mffit.points.loading import Reading
 from mffit.quantities import CHANNELS
-from mffit.report.verdict import judgement, verdict
 from mffit.results import BuildResult
 from mffit.rig import SIMULATED
 from mffit.viewer import constants
@@ -29,8 +28,10 @@ FOUND = frozenset({"fitted", "regularised", "measured"})
 """Status of coefficients that the data determine."""
 
 
-def project_data(result: BuildResult) -> dict[str, Json]:
+def project_data(result: BuildResult, *, verdict: str = "", judgement: str = "") -> dict[str, Json]:
     """All that the page shows of a build, as plain JSON; numbers in SI, null for what is not finite.
+
+    ``verdict`` is the sentence at its top, ``judgement`` that in a word, both as by :mod:`mffit.report.verdict`.
 
     ``others`` are further fits of the same points: ``title``, and what of the rest is different, with the columns that are.
     """
@@ -50,8 +51,8 @@ def project_data(result: BuildResult) -> dict[str, Json]:
             "hand": result.config.hand,
             "exclude": result.config.fit.exclude,
             "inputs": result.made.inputs,
-            "verdict": verdict(result),
-            "judgement": judgement(result),
+            "verdict": verdict,
+            "judgement": judgement,
             "trusted": result.trusted,
             "warnings": [*result.reasons, *result.warnings],
             "seconds": result.seconds,
@@ -164,10 +165,11 @@ def project_html(
     )
 
 
-def project_page(result: BuildResult) -> Page:
-    """The page of a build without a server: one file with the points in it."""
+def project_page(result: BuildResult, *, verdict: str = "", judgement: str = "") -> Page:
+    """The page of a build without a server: one file with the points in it; arguments as of :func:`project_data`."""
     name, simulation = result.config.tyre.name, result.fit.simulation
-    html = project_html(name, project_data(result), turn_slip=simulation.turn_slip, star=simulation.star)
+    data = project_data(result, verdict=verdict, judgement=judgement)
+    html = project_html(name, data, turn_slip=simulation.turn_slip, star=simulation.star)
     return Page(html, (name,))
 
 

@@ -51,12 +51,14 @@ def carry_out(kind: str, path: Path, progress: Progress) -> dict[str, Any] | Non
     from mffit import config, pipeline, viewer
     from mffit.pipeline.inputs import read_points
     from mffit.report import text
+    from mffit.report.verdict import judgement, verdict
 
     out = out_of(path)
     match kind:
         case "fit" | "build":
             written = out if kind == "build" else None
-            return viewer.project_data(pipeline.build(path, written, progress=progress))
+            built = pipeline.build(path, written, progress=progress)
+            return viewer.project_data(built, verdict=verdict(built), judgement=judgement(built))
         case "points":
             settings = config.load(path)
             return viewer.readings_data(settings, read_points(settings))

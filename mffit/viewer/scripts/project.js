@@ -427,7 +427,7 @@ export async function showProject(data) {
   byId("verdict").textContent = project.verdict;
   byId("verdict").className = project.judgement;
   byId("about").textContent = !channels.length ? `${project.points.fitted} points; the fit is under way`
-    : data.others.length ? `${state.fit}: rms misfit ${fit}` : "";
+    : data.others.length || !project.verdict ? `${state.fit}: rms misfit ${fit}` : "";
   const said = project.warnings, box = byId("warnings");
   box.hidden = !said.length;
   box.open = !project.trusted;

@@ -24,6 +24,7 @@ import pytest
 
 import mffit
 from mffit.quantities import SIDEWAYS
+from mffit.report.verdict import judgement, verdict
 from mffit.viewer import project_data, project_html, project_page
 from mffit.viewer.project_points import differing
 from mffit.window.runs import carry_out
@@ -561,7 +562,8 @@ def test_points_are_seen_before_the_first_fit_ends(browser, tyre_toml, result):
         assert console_errors(browser) == []
         ask(browser, "mffit.choose(0)")
         assert visible("#chosen-actions button")
-        session.data, session.fits = mffit.viewer.project_data(result) | {"before": None}, 1
+        given = {"verdict": verdict(result), "judgement": judgement(result)}
+        session.data, session.fits = mffit.viewer.project_data(result, **given) | {"before": None}, 1
         shown(browser)
         assert visible("aside")
         assert visible("#undo")
