@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from small_rigs import LEAN, LOADS, SLIP, disc, simulated, truth
 
-from mffit.fit.agreement import agreement
+from mffit import config as configuration
+from mffit.fit.agreement import agreement, with_odd_part
+from mffit.parts import split
+from mffit.points import load
 
 
 def test_a_regression_line_explains_the_square_of_the_correlation():
@@ -22,3 +26,13 @@ def test_only_points_with_a_reading_and_a_model_count():
     found = agreement(np.array([1.0, 2.0, np.nan, 5.0]), np.array([1.0, 4.0, 3.0, np.nan]))
     assert (found.n, found.max_abs) == (2, 2.0)
     assert np.isnan(agreement(np.zeros(3), np.ones(3)).r2)  # nothing varies, so nothing can be explained
+
+
+def test_the_odd_part_is_compared_where_the_wheel_rolls_forwards(tmp_path):
+    """Rolling backwards, the slip part of Fy has the other sign, and a file for turn slip off does not know it."""
+    simulated(disc(), tmp_path)
+    points, _ = load(configuration.load(tmp_path / "tyre.toml"))
+    found = with_odd_part(truth().values, points, split(points))
+    forwards = len(LOADS) * (len(SLIP) + len(LEAN) + 3) + 14  # zeros, and the coupled sweep
+    assert (found["Fy"].n, found["Mz"].n) == (forwards, forwards)
+    assert found["Fy"].r2 > 0.95
