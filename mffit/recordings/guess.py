@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.points.constants import FEWEST_POINTS
 from mffit.recordings import constants
 from mffit.recordings.by_unit import is_of_kind, only_ones, questions, taken_for
 from mffit.recordings.slip_definition import SLIP, slip_definition
@@ -241,14 +242,16 @@ def _unknown_units(raw: RawTable, found: Mapping[str, Guess]) -> list[str]:
 
 
 def _labels(raw: RawTable, named: Mapping[str, str]) -> dict[str, Guess]:
-    """Columns of labels or directions; a heading in another spelling counts only if its labels differ."""
-    headings = _headings(raw)
+    """Columns of labels or directions; a heading in another spelling counts only if its labels differ, each in several rows."""
+    headings = {simplified(heading).rstrip("."): heading for heading in reversed(raw.headings)}
     found = {}
     for channel in SWEEP_CHANNELS:
-        heading = named.get(channel.name, headings.get(simplified(channel.name)))
+        names = map(simplified, (channel.name, *channel.aliases))
+        heading = named.get(channel.name, next((headings[name] for name in names if name in headings), None))
         if channel.kind == "number" or heading is None:
             continue
-        if heading == channel.name or len(np.unique(np.asarray(raw.column(heading)))) > 1:
+        own, counts = np.unique(np.asarray(raw.column(heading)), return_counts=True)
+        if heading == channel.name or (len(own) > 1 and np.median(counts) >= FEWEST_POINTS):
             found[channel.name] = Guess(channel, heading)
     return found
 

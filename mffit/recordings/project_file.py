@@ -12,6 +12,7 @@ import numpy as np
 import tomli_w
 
 from mffit.config.models import Column, TyreTable
+from mffit.constants import NAMED_IN_SENTENCE
 from mffit.points import main_pressure
 from mffit.recordings.disc import DiscPath, disc_signs
 from mffit.recordings.recording import SniffedRecording, rolls_backward, speed_is_negative
@@ -269,16 +270,20 @@ def _axes(sniffed: Sniffed, stated: str | None) -> str:
 
 
 def how_to_agree(sniffed: Sniffed) -> str:
-    """What to write if no axes fit: the single columns whose reversal lets some fit, with the axes."""
+    """What to write if no axes fit: the fewest columns whose reversal lets some fit, with the axes."""
     guesses = _shared_columns(sniffed)
     cures = [
-        f'{_column(guess._replace(scale=-guess.scale, why="")).partition("  #")[0]} under [columns] with axes = "{axes}"'
-        for name, axes in sniffed.reversible
-        if (guess := guesses.get(name)) is not None and guess.value is None
+        " and ".join(
+            _column(guess._replace(scale=-guess.scale, why="")).partition("  #")[0]
+            for guess in (guesses[name] for name in names)
+        )
+        + f' under [columns] with axes = "{axes}"'
+        for names, axes in sniffed.reversible
+        if all(name in guesses and guesses[name].value is None for name in names)
     ]
     if not cures:
         return "more than one column has the wrong sign: map each with scale = -1"
-    return f"all signs agree with {', or with '.join(cures)}"
+    return f"all signs agree with {', or with '.join(cures[:NAMED_IN_SENTENCE])}"
 
 
 def _shared_columns(sniffed: Sniffed) -> dict[str, Guess]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -39,7 +40,7 @@ from mffit.sweeps import formats
 from tir.conventions import FLIPPED
 
 REVERSIBLE = ("Fz_N", "alpha_deg", "gamma_deg", "Fy_N", "Mz_Nm")
-"""Columns one of which may have the sign of other axes."""
+"""Columns that may have the sign of other axes."""
 
 
 class Level(NamedTuple):
@@ -63,8 +64,8 @@ class Sniffed:
     of_two_tyres: bool = False  #: whether the last warning of ``reading`` is about two tyres
     bad_runs: tuple[BadRun, ...] = ()  #: recordings that a summary of the test calls bad
     evidence: tuple[str, ...] = ()  #: what the axes were decided from, as phrases; empty if nothing decides
-    reversible: tuple[tuple[str, str], ...] = ()
-    """If no axes agree, single columns whose reversal lets some agree, each with the axes."""
+    reversible: tuple[tuple[tuple[str, ...], str], ...] = ()
+    """If no axes agree, the fewest columns whose reversal lets some agree, each choice of them with the axes."""
 
     @property
     def points(self) -> Points:
@@ -259,20 +260,22 @@ def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[s
     return tuple(agreeing), tuple(contradictions(signatures(points)))
 
 
-def reversible(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[str, str], ...]:
-    """The single columns whose reversal lets axes agree with points that were read under the ``declared`` axes, with the axes."""
-    found = []
-    for name in REVERSIBLE:
-        field = name.partition("_")[0]
-        if field != "Fz":
-            turned = points.replace(**{field: -getattr(points, field)})
-            agreeing, _ = axes_of(turned, declared, load_falls=load_falls)
-        elif load_falls:  # a load in ISO-W is positive either way; its sign decides which axes are possible
-            agreeing, _ = axes_of(points, declared, load_falls=False)
-        else:
-            continue
-        found += [(name, axes) for axes in sorted(agreeing, key=list(FLIPPED).index)[:1]]
-    return tuple(found)
+def reversible(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[tuple[str, ...], str], ...]:
+    """The fewest columns whose reversal lets axes agree with points that were read under the ``declared`` axes, with the axes.
+
+    A load in ISO-W is positive either way; its sign decides which axes are possible.
+    """
+    possible = [name for name in REVERSIBLE if load_falls or name != "Fz_N"]
+    for number in range(1, len(possible)):
+        found = []
+        for names in itertools.combinations(possible, number):
+            fields = [name.partition("_")[0] for name in names if name != "Fz_N"]
+            turned = points.replace(**{field: -getattr(points, field) for field in fields})
+            agreeing, _ = axes_of(turned, declared, load_falls=load_falls and "Fz_N" not in names)
+            found += [(names, axes) for axes in sorted(agreeing, key=list(FLIPPED).index)[:1]]
+        if found:
+            return tuple(found)
+    return ()
 
 
 SLOPES = {

@@ -251,7 +251,7 @@ def test_a_single_reversed_column_is_named_with_the_axes(tmp_path, reversed_colu
     found = sniff([signed(tmp_path / "a.csv", reversed_columns)])
     assert not found.axes
     assert found.reversible
-    for name, axes in found.reversible:
+    for (name,), axes in found.reversible:
         turned = {headings[name]} ^ set(reversed_columns)
         assert axes in sniff([signed(tmp_path / "b.csv", tuple(turned))]).axes
         said = f'{name} = {{ column = "{headings[name]}", scale = -1 }} under [columns] with axes = "{axes}"'
@@ -259,11 +259,23 @@ def test_a_single_reversed_column_is_named_with_the_axes(tmp_path, reversed_colu
         with pytest.raises(InputError, match="all signs agree with"):
             pipeline.init_from([tmp_path / "a.csv"], tmp_path / "p", unloaded_radius=0.3, nominal_load=3e3)
     if reversed_columns == ("FZ",):
-        assert found.reversible[0] == ("Fz_N", "iso")
+        assert found.reversible[0] == (("Fz_N",), "iso")
 
 
-def test_no_column_is_named_where_two_are_reversed(tmp_path):
+def test_two_reversed_columns_are_named_with_the_axes(tmp_path):
     found = sniff([signed(tmp_path / "a.csv", ("FY", "FZ"))])
     assert not found.axes
-    assert not found.reversible
-    assert "more than one column has the wrong sign" in text.sniff_summary(found)
+    assert (("Fz_N", "Fy_N"), "iso") in found.reversible
+    assert all(len(names) == 2 for names, _ in found.reversible)
+    said = 'Fz_N = { column = "FZ", scale = -1 } and Fy_N = { column = "FY", scale = -1 } under [columns] with axes = "iso"'
+    assert said in " ".join(text.sniff_summary(found).split())
+
+
+@pytest.mark.parametrize("heading", ["RunNo", "Run", "Test No.", "Versuch", "run_nr"])
+def test_a_column_of_runs_is_known_by_its_usual_names(tmp_path, heading):
+    path = signed(tmp_path / "a.csv", ())
+    table = pd.read_csv(path)
+    table.assign(**{heading: np.arange(len(table)) * 2 // len(table)}).to_csv(path, index=False)
+    assert sniff([path]).recordings[0].guesses["run"].heading == heading
+    table.assign(**{heading: np.arange(len(table))}).to_csv(path, index=False)  # numbers of rows
+    assert "run" not in sniff([path]).recordings[0].guesses
