@@ -23,6 +23,7 @@ from mffit.sweeps.extras import content_of
 from mffit.sweeps.grid import head_of, ragged, without_data
 from mffit.sweeps.raw_table import (
     SPREADSHEET_ERRORS,
+    THOUSANDS_WITH_COMMA,
     THOUSANDS_WITH_POINT,
     Cells,
     RawTable,
@@ -131,11 +132,15 @@ def _dialect(text: str) -> Dialect:
     lines = [line for line in text.split("\n") if line.strip()][:200]
     separator = _separator(lines)
     cells = [cell.strip() for line in lines[1:] for cell in _split(line, separator)]
-    has_comma = separator != "," and any(map(has_decimal_comma, cells))
+    with_comma = [
+        cell for cell in cells if has_decimal_comma(cell)
+    ]  # in quotation marks where it separates cells
+    if separator == "," and all(map(THOUSANDS_WITH_COMMA.fullmatch, with_comma)):
+        with_comma = []
     with_point = [cell for cell in cells if NUMBER_WITH_POINT.fullmatch(cell)]
-    if any("." in cell for cell in cells if has_decimal_comma(cell)):
+    if any("." in cell for cell in with_comma):
         with_point = [cell for cell in with_point if not THOUSANDS_WITH_POINT.fullmatch(cell)]
-    return Dialect(separator, has_comma and not with_point)
+    return Dialect(separator, bool(with_comma) and not with_point)
 
 
 def _separator(lines: list[str]) -> str:
@@ -181,7 +186,7 @@ def _table(body: Body, names: Sequence[str | int]) -> pd.DataFrame:
             table = pd.read_csv(
                 io.BytesIO(body.text),
                 sep=r"\s+" if body.dialect.separator == BLANKS else body.dialect.separator,
-                decimal="," if body.dialect.has_comma else ".",
+                decimal="," if body.dialect.has_comma and body.dialect.separator != "," else ".",
                 header=None,
                 names=list(names),
                 dtype=dict.fromkeys(LABELS.intersection(names), str),

@@ -415,3 +415,12 @@ def test_a_kind_of_warning_is_given_once_with_the_other_files(project):
         said = [warning for warning in load(path).warnings if "Mittelwert" in warning]
         assert len(said) == (2 if count == 2 else 1)
     assert f"; {len(names) - 1} more of this kind, in " in said[0]
+
+
+def test_decimal_commas_in_quotation_marks_between_commas_are_numbers(tmp_path):
+    rows = ['"1,5","0,0","2000,0","-500,5"', '"-2,5",0,"2010,0","700,25"']
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(["alpha_deg,gamma_deg,Fz_N,Fy_N", *rows]) + "\n", encoding="utf-8")
+    raw = formats.read(path)
+    read = [[float(cell) for cell in raw.column(name)] for name in raw.headings]
+    assert read == [[1.5, -2.5], [0.0, 0.0], [2000.0, 2010.0], [-500.5, 700.25]]
