@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 from tir.codegen.graph import PARAMETER, Graph
-from tir.codegen.program import NUMBERS, Program, Switches, refuse_zero_divisors, trace
+from tir.codegen.program import INPUTS, NUMBERS, Program, Switches, refuse_zero_divisors, trace
 from tir.errors import TirError
 from tir.mode import warn_of_doubt, words
 from tir.parameters import TABLE
@@ -70,6 +70,13 @@ class ExportedTyre(NamedTuple):
             for name, factor in factors_at(terms_of(self.tyre), warmer).items():
                 p[name] = p[name] * factor
         return p
+
+    @property
+    def starts(self) -> dict[str, float]:
+        """Inputs, and what can be turned, with their values where none is given: the nominal condition, rolling straight."""
+        nominal = {"Fz": self.tyre["FNOMIN"], "Vx": self.tyre["LONGVL"], "pressure": self.tyre["INFLPRES"]}
+        given = {name: float(nominal.get(name, 0.0)) for name in INPUTS}
+        return given | {one.name: one.start for one in self.turned}
 
     def _numbers(self, graph: Graph) -> dict[str, Any]:
         return {name: float(self.tyre[name]) for name in NUMBERS}

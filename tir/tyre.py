@@ -17,6 +17,7 @@ from tir.codegen.program import Switches
 from tir.document import Document, encoded, read_document
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, counted
+from tir.exporting import exported
 from tir.parameters import BY_NAME, TABLE
 from tir.properties import described
 from tir.record import TyreRecord
@@ -298,9 +299,8 @@ class Tyre(TyreRecord):
             If ``xp`` is no array library, a value by which the equations divide is 0, a name cannot be turned, or an output is
             unknown.
         """
-        return array_function(
-            self, xp, outputs=outputs, turn_slip=turn_slip, star=star, limits=limits, tunable=tunable
-        )
+        made = exported(self, outputs, tunable, turn_slip=turn_slip, star=star, limits=limits)
+        return array_function(made, outputs, xp)
 
     def plot(self, *, loads: Iterable[float] | None = None, turn_slip: bool | None = None) -> Figure:
         """Draw the forces: Fy and Mz over sideslip, Fx over longitudinal slip, Fy over camber.

@@ -3,30 +3,20 @@
 from __future__ import annotations
 
 from collections import namedtuple
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from inspect import Parameter, Signature
 from typing import Any
 
 import numpy as np
 
 from tir.codegen.library import operations_of, run
-from tir.codegen.program import INPUTS, called
+from tir.codegen.program import called
 from tir.equations.forces import Forces
 from tir.errors import TirError
-from tir.exporting import exported
-from tir.record import TyreRecord
+from tir.exporting import ExportedTyre
 
 
-def array_function(
-    tyre: TyreRecord,
-    xp: Any,
-    *,
-    outputs: tuple[str, ...] = Forces._fields,
-    turn_slip: bool | None = None,
-    star: bool = False,
-    limits: bool = False,
-    tunable: Sequence[str] = (),
-) -> Callable[..., Any]:
+def array_function(made: ExportedTyre, outputs: tuple[str, ...], xp: Any) -> Callable[..., Any]:
     """The tyre as a function of arrays of ``xp``; see :meth:`tir.Tyre.array_function`."""
 
     def number(x: Any) -> Any:
@@ -47,23 +37,15 @@ def array_function(
         raise TirError(
             f"{xp!r} is no array library ({error}): give numpy, jax.numpy, torch or cupy"
         ) from None
-    made = exported(tyre, outputs, tunable, turn_slip=turn_slip, star=star, limits=limits)
-    program = made.program(outputs)
-    factors = {one.name: one.start for one in made.turned}
-    usual = {"Fz": tyre["FNOMIN"], "Vx": tyre["LONGVL"], "pressure": tyre["INFLPRES"], **factors}
-    names = (*INPUTS, *factors)
-    signature = Signature(
-        [
-            Parameter(called(name), Parameter.POSITIONAL_OR_KEYWORD, default=float(usual.get(name, 0.0)))
-            for name in names
-        ]
-    )
+    program, starts = made.program(outputs), made.starts
+    given = [Parameter(called(x), Parameter.POSITIONAL_OR_KEYWORD, default=starts[x]) for x in starts]
+    signature = Signature(given)
     result: Any = Forces if outputs == Forces._fields else namedtuple("Outputs", outputs)
 
     def function(*args: Any, **more: Any) -> Any:
-        given = signature.bind(*args, **more)
-        given.apply_defaults()
-        inputs = dict(zip(names, map(number, given.arguments.values()), strict=True))
+        bound = signature.bind(*args, **more)
+        bound.apply_defaults()
+        inputs = dict(zip(starts, map(number, bound.arguments.values()), strict=True))
         return result(*map(number, run(program, operations, inputs)))
 
     function.__signature__ = signature  # type: ignore[attr-defined]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from tir.codegen.library import operations_of, run
-from tir.codegen.program import INPUTS, called
+from tir.codegen.program import called
 from tir.equations.forces import Forces
 from tir.errors import TirError
 from tir.exporting import exported
@@ -48,13 +48,12 @@ def casadi_function(
         raise TirError("casadi_function needs casadi, which is not installed: pip install casadi") from None
     made = exported(tyre, outputs, tunable, turn_slip=turn_slip, star=star, limits=limits)
     program = made.program(outputs)
-    factors = {one.name: one.start for one in made.turned}
-    inputs = {key: casadi.SX.sym(called(key)) for key in (*INPUTS, *factors)}
+    starts = made.starts
+    inputs = {key: casadi.SX.sym(called(key)) for key in starts}
     results = run(program, operations_of(casadi, casadi.if_else, both=casadi.logic_and), inputs)
-    usual = {"Fz": tyre["FNOMIN"], "Vx": tyre["LONGVL"], "pressure": tyre["INFLPRES"], **factors}
     options: dict[str, Any] = {
         "allow_duplicate_io_names": True,  # Fz is an input, and an output within the limits
-        "default_in": [float(usual.get(key, 0.0)) for key in inputs],
+        "default_in": [*starts.values()],
     }
     name = name or ("tyre_turn_slip" if made.switches.turn_slip else "tyre")
     given = [*map(called, inputs)]
