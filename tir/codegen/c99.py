@@ -100,8 +100,7 @@ def export_c(
     -------
     Code
         Header and source. ``<name>_evaluate(Fz, alpha, gamma, kappa, phi_t, Vx, p)`` returns the forces in ISO-W,
-        ``<name>_evaluate_state`` the stiffnesses, relaxation lengths and radii, as structures. ``<name>_evaluate_many`` fills
-        arrays of the forces from arrays of n inputs, which gcc -O3 computes in vectors.
+        ``<name>_evaluate_state`` stiffnesses, relaxation lengths and radii, as structures; ``<name>_evaluate_many`` fills arrays.
 
     Raises
     ------
@@ -117,7 +116,6 @@ def export_c(
     for kind, (function, fields) in KINDS.items():
         text.function(function, kind, made.program(fields, tuned=False), INPUTS)
     _add_many(text)
-    text.header.append("")
     if tunable or lag:
         _add_tuning(text, made)
     if lag:
@@ -171,7 +169,9 @@ def _add_many(text: _Text) -> None:
     inputs, forces = [*map(called, INPUTS)], [f"{force}_out" for force in Forces._fields]
     arrays = [*(f"const double *{x}" for x in inputs), *(f"double *{x}" for x in forces)]
     head = f"void {text.name}_evaluate_many(size_t n, {', '.join(arrays)})"
-    text.header.extend(["", "/* Of n conditions; no array of results may overlap another. */", f"{head};"])
+    text.header.extend(
+        ["", "/* Of n conditions; no array of results may overlap another. */", f"{head};", ""]
+    )
     text.source.extend(
         [
             "#ifdef IN_VECTORS",
