@@ -1,7 +1,7 @@
 """The direct method: alignment, radii, stiffnesses, turn-slip force and eps_gamma from the data without a model, with budgets."""
 
 from mffit.measured.alignment import align
-from mffit.measured.camber_reduction import camber_of_no_spin, unspun
+from mffit.measured.camber_reduction import camber_of_no_spin, unspun, was_coupled
 from mffit.measured.direct import adding_to_camber, at_the_axis, measure
 from mffit.measured.evidence import odd_alpha
 from mffit.measured.one_way import OneWayLag
@@ -37,4 +37,5 @@ __all__ = [
     "odd_alpha",
     "radius_readings",
     "unspun",
+    "was_coupled",
 ]

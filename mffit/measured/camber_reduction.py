@@ -15,7 +15,7 @@ from uncertainties import UFloat
 
 from mffit.measured.result import Measured
 from mffit.measured.uncertain import named
-from mffit.points import Points, main_path
+from mffit.points import Points, levels, main_path
 from mffit.rig_errors import DECLARED, AtZero
 
 READ = {
@@ -101,3 +101,9 @@ def unspun(points: Points, measured: Measured) -> float | None:
         return None
     camber = camber_of_no_spin(main_path(points), row.r_e.value, row.epsilon_gamma.value)
     return camber if camber and abs(camber) <= np.max(np.abs(points.gamma)) else None
+
+
+def was_coupled(points: Points, camber: float) -> bool:
+    """Whether sideslip was run at a camber [rad]."""
+    near = np.abs(points.gamma - camber) < levels.CAMBER.tolerance
+    return bool(np.any(near & (np.abs(points.alpha) > levels.SIDESLIP.tolerance)))

@@ -6,8 +6,7 @@ import math
 from collections.abc import Iterator
 
 from mffit.config import Config
-from mffit.measured import Measured, unspun
-from mffit.planning import was_coupled
+from mffit.measured import Measured, unspun, was_coupled
 from mffit.points import Points
 from mffit.prediction import OnRoad, road_of
 from mffit.results import BuildResult

@@ -3,7 +3,7 @@
 from mffit.planning.additions import ADDITIONS, BY_ID, Addition, addition_named
 from mffit.planning.goals import Goal, read_goal
 from mffit.planning.plan import Identified, NextRun, Plan, PlanStep, next_run, plan
-from mffit.planning.runs import PlannedRun, candidates, was_coupled
+from mffit.planning.runs import PlannedRun, candidates
 
 __all__ = [
     "ADDITIONS",
@@ -20,5 +20,4 @@ __all__ = [
     "next_run",
     "plan",
     "read_goal",
-    "was_coupled",
 ]

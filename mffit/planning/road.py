@@ -18,10 +18,11 @@ from mffit.prediction.road import conditions, postures
 from mffit.quantities import SIDEWAYS
 from mffit.rig_errors import OF_RUN, error_of
 from mffit.scatter import rms
+from tir.frozen import ReadOnlyArrays
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _ChannelOnRoad:
+class _ChannelOnRoad(ReadOnlyArrays):
     """The uncertain force of one channel on the road (n,), in r independent errors of unit variance."""
 
     linear: LinearisedChannel

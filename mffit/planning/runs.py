@@ -13,6 +13,7 @@ import numpy as np
 from mffit.as_json import keys
 from mffit.config import Config, SweepTable, setup_names
 from mffit.constants import CAMBER_OF_SLOPES
+from mffit.measured import was_coupled
 from mffit.planning import constants
 from mffit.planning.additions import ADDITIONS, Addition, LineOfPoints
 from mffit.points import Points, levels, main_path, main_pressure
@@ -84,12 +85,6 @@ def _beyond(values: np.ndarray, kind: levels.LevelKind) -> np.ndarray:
     """Mask (n,) of the values that differ from zero by more than the tolerance of their kind."""
     out: np.ndarray = np.abs(values) > kind.tolerance
     return out
-
-
-def was_coupled(points: Points, camber: float) -> bool:
-    """Whether sideslip was run at a camber [rad]."""
-    near = np.abs(points.gamma - camber) < levels.CAMBER.tolerance
-    return bool(np.any(near & _beyond(points.alpha, levels.SIDESLIP)))
 
 
 def largest_slip(points: Points) -> float:
