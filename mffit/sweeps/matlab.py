@@ -169,7 +169,14 @@ def _collect(names: tuple[str, ...], item: Any, file: Any, found: list[Leaf]) ->
                 np.asarray(item, dtype=float).reshape(-1) if is_vector else {"shape": [*item.shape[::-1]]},
             )
         )
-    elif item.dtype.kind == "O" and kind != "cell":
+    elif item.dtype.kind == "O" and kind == "cell":
+        cells = [file[one] for one in np.asarray(item).reshape(-1)]
+        if all(hasattr(one, "items") for one in cells):  # of structures, as an array of them
+            for k, one in enumerate(cells, 1):
+                _collect((*names[:-1], f"{names[-1]}({k})"), one, file, found)
+        elif any(one.dtype.kind == "f" and one.size > 1 for one in cells if hasattr(one, "dtype")):
+            found.append((names, {"cells": True}))
+    elif item.dtype.kind == "O":
         _collect_elements(names, [file[one] for one in np.asarray(item).reshape(-1)], file, found)
 
 

@@ -56,6 +56,10 @@ def _collect(path: tuple[str, ...], value: np.ndarray, found: list[Leaf]) -> Non
     elif value.dtype == object and all(np.asarray(cell).dtype.names for cell in value.reshape(-1)):
         for k, cell in enumerate(value.reshape(-1), 1):  # a cell array of structures, as an array of them
             _collect((*path[:-1], f"{path[-1]}({k})"), np.asarray(cell), found)
+    elif value.dtype == object and any(
+        np.asarray(cell).dtype.kind == "f" and np.asarray(cell).size > 1 for cell in value.reshape(-1)
+    ):
+        found.append((path, {"cells": True}))
     elif value.dtype.kind == "U" and value.size == 1:
         found.append((path, str(value.reshape(-1)[0])[:LARGEST_TEXT].strip()))
     elif value.dtype.kind in "fiub" and value.size > 1 and value.size == max(value.shape):

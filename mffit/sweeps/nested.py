@@ -98,6 +98,11 @@ def without_columns(others: Mapping[str, Mapping[str, Any]], path: Path) -> Inpu
             else "save every channel as a vector there"
         )
         sentence = f"holds {name}, an object of MATLAB ({objects[name]}) that nothing else reads: {remedy}"
+    elif cells := [name for name, one in others.items() if "cells" in one]:
+        sentence = (
+            f"holds {cells[0]}, a cell array of vectors, whose cells have no names: save every channel as a vector, such as "
+            f"SA = {cells[0]}{{1}}"
+        )
     elif matrices:
         name, size = next(iter(matrices.items()))
         sentence = (

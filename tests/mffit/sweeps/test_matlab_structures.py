@@ -142,3 +142,34 @@ def test_a_cell_array_of_structures_is_read_as_runs(tmp_path):
     np.testing.assert_allclose(raw.column("SA"), np.concatenate([run["SA"] for run in runs]))
     np.testing.assert_allclose(raw.column("FY"), np.concatenate([run["FY"] for run in runs]))
     assert list(dict.fromkeys(raw.column("run"))) == ["data(1)", "data(2)", "data(3)"]
+
+
+def cells_into_hdf5(path: Path, cells: list) -> Path:
+    """Write a cell array of v7.3, whose cells are references."""
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(path, "w") as file:
+        array = file.create_dataset("data", (len(cells), 1), h5py.ref_dtype)
+        array.attrs["MATLAB_class"] = np.bytes_("cell")
+        for k, cell in enumerate(cells):
+            into_hdf5(file.require_group("#refs#"), f"c{k}", cell, file)
+            array[k, 0] = file[f"#refs#/c{k}"].ref
+    return path
+
+
+def test_a_cell_array_of_structures_of_v73_is_read_as_runs(tmp_path):
+    alpha = np.linspace(-8.0, 8.0, 12)
+    runs = [{"SA": alpha + k, "FY": -1000.0 * alpha * (1 + k)} for k in range(3)]
+    raw = formats.read(cells_into_hdf5(tmp_path / "a.mat", runs))
+    np.testing.assert_allclose(raw.column("SA"), np.concatenate([run["SA"] for run in runs]))
+    assert list(dict.fromkeys(raw.column("run"))) == ["data(1)", "data(2)", "data(3)"]
+
+
+def test_a_cell_array_of_vectors_is_refused_with_the_cure(tmp_path):
+    vectors = [np.linspace(0.0, 1.0, 9), np.linspace(2.0, 3.0, 9)]
+    cells = np.empty((1, 2), dtype=object)
+    cells[0, :] = vectors
+    scipy.io.savemat(tmp_path / "five.mat", {"data": cells})
+    cells_into_hdf5(tmp_path / "seven.mat", vectors)
+    for name in ("five.mat", "seven.mat"):
+        with pytest.raises(InputError, match=r"data, a cell array of vectors.*SA = data\{1\}"):
+            formats.read(tmp_path / name)
