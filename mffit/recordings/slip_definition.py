@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.points.constants import SMALLEST_SWEEP_OF_SLIP, SOFTEST_SLIP_STIFFNESS
+from mffit.points.constants import CORE, SMALLEST_SWEEP_OF_SLIP, SOFTEST_SLIP_STIFFNESS
 from mffit.points.slip_form import ROAD, SlipForm, over_road
 from mffit.points.slip_zero import (
     FROM_SPEEDS,
@@ -60,9 +60,23 @@ def slip_definition(
         for guess, zero, _ in known
         if guess is not chosen
     ]
+    if asked := _only_positive(chosen, found["Fx_N"]):
+        remarks.append(asked)
     said = sentence(chosen.heading, chosen.against, nearest)
     chosen = chosen._replace(why="; ".join(filter(None, (chosen.why, said))))
     return SlipColumn(chosen, tuple(remarks), force_reversed)
+
+
+def _only_positive(slip: Guess, force: FoundChannel) -> str:
+    """The question about a slip and a force that both have positive readings only, as absolute values of braking have."""
+    limit = SMALLEST_SWEEP_OF_SLIP * slip.upper
+    below = float(np.nanpercentile(force.values, CORE[0])) + SMALLEST_SWEEP_OF_SLIP * force.size
+    if slip.scale < 0.0 or slip.lower < -limit or below < 0.0:
+        return ""
+    return (
+        f"{slip.heading} and {force.heading} are never negative: was the wheel driven? If it was braked, these are absolute "
+        "values: write scale = -1 for kappa and for Fx_N under [columns]"
+    )
 
 
 def _force_reversed(found: Mapping[str, FoundChannel], unit_of: Callable[[str], str]) -> str:
@@ -134,7 +148,10 @@ def _judged(
         slip = converted(column.values, column.unit, "") if column.unit else column.values
     form, in_form = _form(slip, found, unit_of)
     force_reversed = ""
-    if zero.slope < 0.0:
+    if zero.slope > 0.0 and BRAKING.search(column.heading) and BRAKING.search(found["Fx_N"].heading):
+        force_reversed = "braking is positive in the file, as in the slip"
+        guess = guess.reversed("braking is positive in the file, as in the force")
+    elif zero.slope < 0.0:
         zero = zero.reversed
         confirmed = form is not None and form.over is not None
         if confirmed or BRAKING.search(found["Fx_N"].heading):
