@@ -172,3 +172,15 @@ def test_a_name_without_a_heading_is_refused(tmp_path):
     found = CliRunner().invoke(projects.sniff, [str(table(tmp_path / "a.csv")), "--column", "Mz_Nm"])
     assert isinstance(found.exception, InputError)
     assert "write p_kPa=Druck" in str(found.exception)
+
+
+def test_headings_in_french_are_known(tmp_path):
+    t = np.arange(0.0, 12.0, 0.05)
+    alpha = 8.0 * np.sin(2.0 * np.pi * t / 12.0)
+    table = {
+        "Temps [s]": t, "Angle de dérive [deg]": alpha, "Carrossage [deg]": 0.0 * t, "Charge verticale [N]": 3000.0 + 0.0 * t,
+        "Effort latéral [N]": -3000.0 * np.tanh(0.25 * alpha), "Pression [bar]": 2.4 + 0.0 * t, "Vitesse [m/s]": 15.0 + 0.0 * t,
+    }  # fmt: skip
+    pd.DataFrame(table).to_csv(tmp_path / "a.csv", index=False)
+    found = sniff([tmp_path / "a.csv"]).recordings[0].guesses
+    assert {"time_s", "alpha_deg", "gamma_deg", "Fz_N", "Fy_N", "p_kPa", "V_mps"} <= found.keys()
