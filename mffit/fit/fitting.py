@@ -137,7 +137,7 @@ def fit(
         ),
         warnings=(
             *([moved] if contradicted else []),
-            *warnings(fitted, full, doubts, outlying, files.untested),
+            *warnings(full, doubts, outlying, files.untested),
             *nominal_pressure_sentences(files),
             *turning_sentences(points, best, at_turns),
             *(confounding_sentence(row, modelled=found.at_temperature) for row in confounded),

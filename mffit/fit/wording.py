@@ -235,18 +235,16 @@ def nominal_pressure_sentences(files: Files) -> Iterator[str]:
 
 
 def warnings(
-    plain: Fitted,
     fitted: Fitted,
     doubts: Sequence[Doubt],
     outlying: Sequence[Outlier],
     untested: Mapping[str, str],
 ) -> tuple[str, ...]:
-    """All warnings of the fits without and with influences, most important first; ``untested`` as in :class:`Files`."""
+    """All warnings of the fit with influences, most important first; ``untested`` as in :class:`Files`."""
     out = [
         f"the sweeps do not vary the {word}: the file's range of it is {origin}, and was not tested"
         for word, origin in untested.items()
     ]
-    out += _at_bounds(plain, fitted)
     out += by_hand_warnings(fitted)
     out += [doubt.sentence for doubt in doubts]
     if outlying:
@@ -298,37 +296,17 @@ def contradicted_priors(fitted: Fitted) -> Iterator[str]:
             )
 
 
-def _at_bounds(plain: Fitted, full: Fitted) -> list[str]:
-    """Warnings on numbers at bounds or physical limits in the plain fit and, if they differ, in the full fit."""
-    said, special = (_held_by_bounds(fit) for fit in (plain, full))
-    if special == said:
-        return [f"{said}; check the sweeps that determine them"] if said else []
-    modelled = f"in the fit with what is modelled beside: {special or 'none'}"
-    return [f"{said}; {modelled}" if said else modelled]
-
-
-def _held_by_bounds(fitted: Fitted) -> str:
-    """The numbers at a limit, in words."""
-    return "; ".join(f"{word}: {', '.join(names)}" for word, names in at_limits(fitted).items() if names)
-
-
-def at_limits(fitted: Fitted) -> dict[str, list[str]]:
-    """Numbers at a bound of the table, outside the usual range, or at a physical limit, by words; without bounds by hand."""
-    at_bound = fitted.at_bound - fitted.hand.bounded.keys()
+def at_limits(fitted: Fitted) -> tuple[str, ...]:
+    """Coefficients at a bound, at a physical limit or outside the range of usual tyres; without bounds by hand."""
     rare = {
         n.name
         for n in fitted.numbers
         if n.name in BY_NAME
-        and n.name not in fitted.hand.bounded
         and BY_NAME[n.name].rare(fitted.values[n.name])
         and not BY_NAME[n.name].rare(n.expected)
     }
-    words = {
-        "at the bound of plausible values": at_bound - fitted.at_limit,
-        f"outside {RARE}": rare - at_bound,
-        "at a limit of the curves, such as E <= 1": at_bound & fitted.at_limit,
-    }
-    return {word: sorted(names) for word, names in words.items()}
+    bound = fitted.at_bound & fitted.values.keys()
+    return tuple(sorted((bound | rare) - fitted.hand.bounded.keys()))
 
 
 SCALED = {

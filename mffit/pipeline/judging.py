@@ -45,9 +45,7 @@ def judged(
         linear=linear,
         held=left.held,
         rig=full.rig,
-        at_limits=tuple(
-            sorted({name for names in at_limits(full).values() for name in names if name in full.values})
-        ),
+        at_limits=at_limits(full),
         free=len(full.values),
         left=fitted.left,
         broken=tuple(_refused(files)),
