@@ -202,7 +202,7 @@ def test_the_road_comes_first_and_its_lesser_side_is_a_headline(result, tmp_path
         "1210 ± 12 N",
         "−1210 ± 12 N",
         "at least 1.178 ± 0.011",
-        "better known by a sweep the other way",
+        "better known with a sweep the other way",
     ):
         assert number in text
     assert (tmp_path / "plots/road.png").is_file()

@@ -67,7 +67,7 @@ def test_every_place_shows_the_misfit_of_the_readings_that_state_their_noise(few
     written = json.loads((out / "result.json").read_text())["fit"]["channels"]["Fy"]["over_noise"]
     assert written == pytest.approx(expected, rel=1e-3)
     shown = f"{expected:.2f}"
-    assert re.search(rf"^Fy .* {shown} ", text.build_summary(result), re.MULTILINE)
+    assert re.search(rf"^Fy .* {shown} ", text.build_explained(result), re.MULTILINE)
     page = (out / "report.html").read_text(encoding="utf-8")
     assert f"{shown} × the noise" in page
     assert f">{shown} ×<" in page  # the table of the fit
@@ -93,7 +93,7 @@ def test_the_window_has_the_noise_of_the_same_readings(few):
 
 def test_without_a_stated_noise_no_place_shows_a_ratio(unstated):
     assert np.isnan(unstated.trust.over_noise["Fy"])
-    assert re.search(r"^Fy .* N +- ", text.build_summary(unstated), re.MULTILINE)
+    assert re.search(r"^Fy .* N +- ", text.build_explained(unstated), re.MULTILINE)
     assert "Fy" not in noise_in_the_window(unstated)
 
 

@@ -207,7 +207,7 @@ def test_a_point_lies_as_far_from_its_curve_as_the_model_misses_it(engine, resul
     assert len(curved) > len(result.points) / 2
     rows, on = (np.array(column) for column in zip(*curved, strict=True))
     missed = (result.points.channel(y) - result.fit.simulation.readings(result.points)[y])[rows]
-    assert shown[rows] - on == pytest.approx(missed, abs=1e-3)
+    assert shown[rows] - on == pytest.approx(missed, abs=2e-3)
     assert np.ptp(missed) > 1.0
 
 
@@ -231,9 +231,10 @@ def test_each_picture_has_the_sweeps_that_vary_over_its_axis(engine, result):
 
 
 def test_residuals_are_readings_less_model(engine, result):
+    """The page has six digits of a reading: a thousandth of a newton here."""
     shown = np.array(engine.panel("alpha", "residual of Fy")["py"], dtype=float)[: len(result.points)]
     assert shown == pytest.approx(
-        result.points.Fy - result.fit.simulation.readings(result.points).Fy, abs=1e-3
+        result.points.Fy - result.fit.simulation.readings(result.points).Fy, abs=2e-3
     )
 
 
