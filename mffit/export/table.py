@@ -143,7 +143,7 @@ def _tables(
 def _slope_error(force: Function, slip: str, grid: Grid) -> tuple[float, float] | None:
     """Largest relative error of the table's slope at zero slip, at the loads of its nodes and halfway between, and that load.
 
-    None for a table without zero slip, or without loads.
+    None for a table without zero slip, without loads, or of a tyre without stiffness.
     """
     if slip not in grid.axes or "Fz_N" not in grid.axes:
         return None
@@ -161,6 +161,10 @@ def _slope_error(force: Function, slip: str, grid: Grid) -> tuple[float, float] 
     step = SMALL_STEP * float(np.ptp(nodes))
     exact = slope(-step, step, every)
     sides = [slope(min(0.0, x), max(0.0, x), loads) for x in nodes[max(zero - 1, 0) : zero + 2].tolist() if x]
+    stiff = exact != 0.0
+    if not np.any(stiff):
+        return None
+    every, exact = every[stiff], exact[stiff]
     off = np.max([np.abs(np.interp(every, loads, side) / exact - 1.0) for side in sides], axis=0)
     return float(off.max()), float(every[np.argmax(off)])
 
