@@ -162,7 +162,9 @@ class Comparison(Brief):
         """The numbers, then the coefficients, that differ beyond chance, at a false discovery rate of 1 %."""
         from scipy.stats import false_discovery_control  # slow to load, so it is imported only on use
 
-        known = [row for row in (*self.numbers, *self.coefficients) if row.z is not None and math.isfinite(row.z)]
+        known = [
+            row for row in (*self.numbers, *self.coefficients) if row.z is not None and math.isfinite(row.z)
+        ]
         if not known:
             return ()
         chances = [2.0 * ndtr(-abs(row.z or 0.0)) for row in known]

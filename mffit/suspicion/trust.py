@@ -110,6 +110,11 @@ class FinishedFit(ReadOnlyArrays, JudgedMeasurement):
     left: float = 0.0  #: predicted decrease of the sum of squares by one more step: 0 at the minimum
     broken: tuple[str, ...] = ()  #: errors that the check finds in the written files, as sentences
 
+    @property
+    def averaged(self) -> bool:
+        """Whether points are means of a recording's rests, with the standard error of the mean as their uncertainty."""
+        return bool(np.any((self.points.last_line > self.points.line) & ~self.points.continuous))
+
     def misfit(self, channel: str, rows: np.ndarray | None = None) -> OverNoise:
         """Misfit over the stated noise at the used readings, or at those of them in the mask ``rows`` (n,)."""
         return self._over(self.points.u(channel), channel, rows)
@@ -225,17 +230,22 @@ def not_ended(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 @of_model(
     id="misfit-above-noise",
     outcome=Outcome.GRADED,
-    sentence="the model misses {channel} by {ratio:.3g} times its stated uncertainty, most in {carriers}; {cause}; check these "
-    "sweeps and the stated uncertainty, or run mffit diagnose",
+    sentence="the model misses {channel} by {ratio:.3g} times {noise}, most in {carriers}; {cause}; check these sweeps and the "
+    "uncertainty, or run mffit diagnose",
 )
 def above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Scatter over the stated uncertainty, channel by channel, or a misfit that an effect explains better than model error."""
+    """Scatter over the uncertainty, channel by channel, or a misfit that an effect explains better than model error.
+
+    It contradicts an uncertainty that was stated. That of means of a recording is the scatter within each rest, and nobody said
+    that rests differ by no more.
+    """
+    noise = "the scatter within its rests" if fit.averaged else "its stated uncertainty"
     for name in fit.used:
         rough = far(fit.rough(name), constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA)
         certain = rough or (fit.wrong(name) and fit.cause_is_certain and not fit.against)
         if certain or fit.doubtful(name):
             facts = {"channel": name, "ratio": fit.misfit(name).ratio, "carriers": _carriers(fit, name)}
-            yield {**facts, "cause": _cause(fit), "doubtful": not certain}
+            yield {**facts, "noise": noise, "cause": _cause(fit), "doubtful": fit.averaged or not certain}
 
 
 @of_model(

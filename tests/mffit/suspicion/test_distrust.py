@@ -25,12 +25,14 @@ NAMES = tuple(f"sweep_{k}" for k in range(SWEEPS))
 SWEEP = np.repeat(np.arange(SWEEPS), EACH)
 
 
-def judged(off: np.ndarray, *, u: float = U, r2: float = 0.999, lean: float = 0.0, **more) -> Trust:
+def judged(
+    off: np.ndarray, *, u: float = U, r2: float = 0.999, lean: float = 0.0, lines: int = 1, **more
+) -> Trust:
     """The judgement of a model that misses Fy of ten sweeps of 20 points by ``off`` (200,) [N]."""
     n = len(off)
     points = make_points(
         0.0, np.radians(lean), 1500.0, Fy=np.zeros(n), Mz=np.nan, u_Fy=u, p=2e5, V=11.0, phi_t=0.0, sweep=SWEEP[:n],
-        sweep_names=NAMES,
+        sweep_names=NAMES, line=1, last_line=lines,
     )  # fmt: skip
     used = {"Fy": np.ones(n, bool), "Mz": np.zeros(n, bool)}
     fit = FinishedFit(
@@ -63,6 +65,13 @@ def test_the_misfit_is_in_doubt_from_1_2_and_not_trusted_from_1_5(scale, trusted
     found = judged(noise(scale))
     assert found.trusted == trusted
     assert bool(found.doubts) == doubted
+
+
+def test_the_scatter_within_rests_is_exceeded_with_a_doubt():
+    """Points that are means of a hundred lines state the error of the mean; nobody said that rests differ by no more."""
+    found = judged(noise(3.0), lines=100)
+    assert found.trusted
+    assert "3 times the scatter within its rests" in found.doubts[0]
 
 
 @pytest.mark.parametrize(
