@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
+from mffit.linearised import LinearisedFit
 from mffit.measured.result import LoadResult, SideslipReading, SideslipZeros
 from mffit.points import make_points
 from mffit.rig import Readings
@@ -69,8 +70,9 @@ def test_the_misfit_is_in_doubt_from_1_2_and_not_trusted_from_1_5(scale, trusted
 
 def test_the_scatter_within_rests_is_exceeded_with_a_doubt():
     """Points that are means of a hundred lines state the error of the mean; nobody said that rests differ by no more."""
-    found = judged(noise(3.0), lines=100)
+    found = judged(noise(3.0), lines=100, linear=LinearisedFit((), {}))
     assert found.trusted
+    assert not judged(noise(3.0), linear=LinearisedFit((), {})).trusted
     assert "3 times the scatter within its rests" in found.doubts[0]
 
 
