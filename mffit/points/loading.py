@@ -177,6 +177,11 @@ def _nothing(reduced: Sequence[Reduced]) -> str:
         return (
             f'no sweep is left: the readings are {DRIVEN}; name its column, Fx_N = "HEADING" under [columns]'
         )
+    if any(note.points for part in reduced for note in part.stretches):
+        return (
+            "no sweep rests long enough for a steady point: on a disc, angles that keep moving give none, because turn slip is "
+            "found from pairs of like rests; hold every set-point for some seconds"
+        )
     most = f" (most of the time: {longest})" if longest else ""
     remedy = "hold every set-point for some seconds"
     if DRIVEN not in reasons:

@@ -125,7 +125,10 @@ def test_what_a_build_refuses_otherwise_is_a_warning_of_init(tmp_path, capsys):
     said = " ".join(capsys.readouterr().out.split())
     assert "mffit build refuses these recordings: no sweep rests long enough" in said
     assert run("build", tmp_path / "p" / "tyre.toml", "--out", tmp_path / "out") == 2
-    assert "no sweep rests long enough" in capsys.readouterr().err
+    refused = capsys.readouterr().err
+    assert "no sweep rests long enough" in refused
+    assert "pairs of like rests; hold every set-point" in refused
+    assert "leave out column time_s" not in refused  # samples in motion are no finished points
 
 
 def test_sniff_leaves_the_path_of_a_disc_open(capsys):
