@@ -173,6 +173,11 @@ def _syntax_error(error: tomllib.TOMLDecodeError, path: Path, text: str) -> Inpu
     place = re.search(r"\(at line (\d+), column (\d+)\)", message)
     line = int(place[1]) if place else max(len(text.splitlines()), 1)
     reason = message.partition(" (at ")[0]
+    twice = re.fullmatch(r"Cannot declare \((.*?),?\) twice", reason)
+    if twice:
+        table = ".".join(re.findall("'([^']*)'", twice[1]))
+        sentence = f"has the table [{table}] twice; write all its keys under one [{table}]"
+        return InputError(sentence, file=path, line=line)
     lines = text.splitlines()
     comma = DECIMAL_COMMA.search(lines[line - 1]) if line <= len(lines) else None
     remedy = f"write the number with a decimal point, {comma[1]}.{comma[2]}" if comma else "correct this line"

@@ -161,6 +161,10 @@ CORPUS: dict[str, tuple[Change, str]] = {
         toml("unloaded_radius = 0.3", "unloaded_radius ="),
         "tyre.toml:7: is not valid TOML",
     ),
+    "a table that stands twice": (
+        toml("[rig]", "[fit]\n[fit]\n[rig]"),
+        "has the table [fit] twice; write all its keys under one [fit]",
+    ),
     "a property file as tyre.toml": (
         as_tyre_toml(WHOLE_TIR),
         "tyre.toml: is a property file, not a tyre.toml",

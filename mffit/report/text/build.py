@@ -34,6 +34,7 @@ def build_summary(result: BuildResult, written: str = "", following: Sequence[tu
         **_content(result),
         written=written,
         reasons=result.reasons[: constants.MOST_REASONS],
+        doubts=() if result.reasons else result.trust.doubts[: constants.MOST_REASONS],
         numbers=_of_model(result),
         following=steps(following),
     )
@@ -69,6 +70,7 @@ def build_explained(result: BuildResult) -> str:
         written="",
         following="",
         reasons=result.reasons,
+        doubts=result.trust.doubts,
         over_noise=lambda channel: over_noise(result, channel),
         zeros=zeros_listed(result.fit.rig),
         numbers=spin_numbers(result.measured, [name for name in KEYS if name not in hidden])

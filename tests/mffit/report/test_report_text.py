@@ -105,6 +105,12 @@ def test_what_to_do_is_never_cut(result):
     assert text.few([sentence]) == [sentence]
 
 
+def test_a_doubt_is_said_whole_below_the_verdict(result):
+    doubt = "what is in doubt, with " + "a long cause, " * 20 + "and the cure"
+    said = " ".join(text.build_summary(replace(result, trust=Trust(doubts=(doubt,)))).split())
+    assert f"In doubt: {doubt}." in said
+
+
 def test_the_summary_ends_with_commands_as_a_shell_takes_them(result):
     said = text.build_summary(result, following=[("mffit build a.toml --explain", "what it does")])
     assert said.splitlines()[-2:] == ["Next:", "  mffit build a.toml --explain  # what it does"]
