@@ -90,7 +90,7 @@ def _build(
         with voice.progress() as show:
             result = pipeline.build(settings, where, progress=show, **asked)
         if not explain:
-            voice.warn(result.warnings if voice.quiet or voice.json else text.few(result.warnings))
+            voice.warn(result.warnings if voice.quiet or voice.json else text.warnings_beside(result))
             voice.answer(result, _summary(result, tyre_toml, out, coefficients))
             return _judge(voice, result.tir_path, result.reasons, result.trust.doubts, strict=strict)
     said, kept = pipeline.explained(where)

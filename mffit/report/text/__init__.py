@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from mffit.on_demand import on_demand
 
 if TYPE_CHECKING:
-    from mffit.report.text.build import build_explained, build_summary, few
+    from mffit.report.text.build import build_explained, build_summary, few, warnings_beside
     from mffit.report.text.compare import comparison_table
     from mffit.report.text.convert import conversion_summary
     from mffit.report.text.diagnosis import diagnosis_summary, models_written
@@ -39,5 +39,6 @@ __all__ = [
     "sniff_summary",
     "spin_summary",
     "steps",
+    "warnings_beside",
 ]
 __getattr__ = on_demand(__name__)

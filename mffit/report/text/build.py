@@ -33,8 +33,8 @@ def build_summary(result: BuildResult, written: str = "", following: Sequence[tu
         "build",
         **_content(result),
         written=written,
-        reasons=result.reasons[: constants.MOST_REASONS],
-        doubts=() if result.reasons else result.trust.doubts[: constants.MOST_REASONS],
+        reasons=_verdict_because(result) if result.reasons else (),
+        doubts=() if result.reasons else _verdict_because(result),
         numbers=_of_model(result),
         following=steps(following),
     )
@@ -89,6 +89,16 @@ def few(warnings: Iterable[str]) -> list[str]:
     every = list(warnings)
     more = len(every) - constants.MOST_REASONS
     return every[: constants.MOST_REASONS] + ([f"{more} more: --explain shows them"] if more > 0 else [])
+
+
+def warnings_beside(result: BuildResult) -> list[str]:
+    """The warnings to print beside the summary, which has those that its verdict rests on; few, and how many more there are."""
+    return few(said for said in result.warnings if not said.endswith(_verdict_because(result)))
+
+
+def _verdict_because(result: BuildResult) -> tuple[str, ...]:
+    """The sentences below the verdict of the summary."""
+    return (result.reasons or result.trust.doubts)[: constants.MOST_REASONS]
 
 
 def _of_road(result: BuildResult) -> str:
