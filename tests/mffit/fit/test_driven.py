@@ -15,7 +15,7 @@ from mffit.fit.known import known_before_fit
 from mffit.fit.plan import fit_plan
 from mffit.fit.problem import fit_problem
 from mffit.fit.start import starting_values
-from mffit.fit.wording import _held_by_bounds
+from mffit.fit.wording import at_limits
 from mffit.pipeline.measuring import measure
 from tests.mffit.fit import combined_programme as belt
 
@@ -176,13 +176,13 @@ def test_slip_without_sideslip_is_fitted_to_the_noise():
         assert abs(row.value - true[name]) < 3.3 * row.stderr, name
 
 
-def test_a_rare_value_is_warned_of_unless_the_base_has_it(found):
+def test_a_rare_value_counts_as_at_a_limit_unless_the_base_has_it(found):
     rare = replace(found.search, values={**found.search.values, "RBX3": 300.0}, at_bound=frozenset())
-    assert _held_by_bounds(rare) == "outside the range of usual tyres: RBX3"
+    assert at_limits(rare) == ("RBX3",)
     like_the_base = [
         replace(n, start=310.0, expected=310.0) if n.name == "RBX3" else n for n in found.search.numbers
     ]
-    assert _held_by_bounds(replace(rare, numbers=like_the_base)) == ""
+    assert at_limits(replace(rare, numbers=like_the_base)) == ()
 
 
 def test_the_uncertainty_of_the_camber_stiffness_contains_the_skew_of_the_axis(found):
