@@ -88,7 +88,7 @@ def only_ones(
 def _fits(column: FoundChannel) -> bool:
     """Whether the readings can be those of the channel."""
     if column.channel.name == "time_s":
-        steps = np.diff(column.values)
+        steps = np.diff(column.values[np.isfinite(column.values)])
         return bool(np.all(steps >= 0.0) and np.any(steps > 0.0))
     values = converted(column.values, column.stated, column.channel.unit)
     return not NOT_THE_TYRES.search(column.heading) and not implausible(

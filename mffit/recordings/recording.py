@@ -24,7 +24,7 @@ from mffit.recordings.unstated import Guess
 from mffit.sheets import file_of
 from mffit.sweeps import formats
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel, unknown_channel
-from mffit.sweeps.columns import numbers
+from mffit.sweeps.columns import numbers, with_missing_times
 from mffit.sweeps.raw_table import RawTable, with_values
 from mffit.sweeps.units import converted
 
@@ -192,7 +192,8 @@ def _clock(raw: RawTable, guess: Guess | None) -> _Clock:
     if guess is None:
         return _Clock()
     time = converted(numbers(raw.column(guess.heading)), guess.unit_of_readings, guess.channel.unit)
-    time = spread(time)
+    time = with_missing_times(time)
+    time = spread(time[np.isfinite(time)])
     step = float(np.median(np.diff(time))) if len(time) > 1 else np.nan
     if not step > 0.0:
         return _Clock()

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
+from mffit.config.lines import line_text
 from mffit.config.models import Column
 from mffit.errors import InputError, shortened
 from mffit.quantities import CHANNELS, u_column
@@ -31,7 +32,7 @@ from tir.frozen import ReadOnlyArrays
 
 DIRECTIONS = {"forward": 1, "backward": -1, "1": 1, "+1": 1, "-1": -1}
 UNCERTAINTIES = tuple(u_column(name) for name in CHANNELS)
-MAY_BE_BLANK = frozenset({"iteration", "point", *UNCERTAINTIES})
+MAY_BE_BLANK = frozenset({"iteration", "point", "time_s", *UNCERTAINTIES})
 NUMBER_WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
 
 
@@ -239,8 +240,47 @@ def _read(source: _Source) -> _Read | None:
         return _Read(np.array([text_of(cell) for cell in different.tolist()], dtype=object)[where])
     if channel.kind == "direction":
         return _Read(_directions(source))
-    read = _in_range(source, _in_contract_unit(source, _numbers(source)))
+    stated = _Read(_numbers(source))
+    if channel.name == "time_s" and np.any(np.isnan(stated.values)):
+        stated = _without_missing_times(source, stated.values)
+    read = _in_range(source, _in_contract_unit(source, stated.values))
+    read = read._replace(warnings=(*stated.warnings, *read.warnings))
     return _positive(source, read) if channel.name in UNCERTAINTIES else read
+
+
+def _without_missing_times(source: _Source, time: np.ndarray) -> _Read:
+    """The times of the samples, none missing, and a sentence about those that were interpolated.
+
+    Raises InputError that names all samples whose time the others do not tell.
+    """
+    complete = with_missing_times(time)
+    untold = np.isnan(complete)
+    missing = untold if np.any(untold) else np.isnan(time)
+    row = int(missing.argmax())
+    lines = np.asarray(source.raw.lines)[missing]
+    said = f"empty in {'line' if len(lines) == 1 else 'lines'} {line_text(lines)}"
+    if np.any(untold):
+        sentence = (
+            f"{said}, where the times before and after are missing or not as far apart as so many samples; complete the cells or "
+            "remove the rows"
+        )
+        raise source.refusal(sentence, row)
+    return _Read(complete, (str(source.refusal(f"{said}; interpolated at the rate of the recording", row)),))
+
+
+def with_missing_times(time: np.ndarray) -> np.ndarray:
+    """The times (n,) of samples in any unit, with each NaN interpolated if the times before and after it are as far apart as so
+    many samples of the recording's rate; else it stays NaN.
+    """
+    known = np.flatnonzero(np.isfinite(time))
+    samples, steps = np.diff(known), np.diff(time[known])
+    if np.all(samples > 1):
+        return time
+    step = float(np.median(steps[samples == 1]))
+    told = np.r_[False, np.abs(steps - samples * step) < constants.CLOCK_WITHIN_STEP * step, False]
+    rows = np.arange(len(time))
+    between = np.searchsorted(known, rows)
+    return np.where(np.isnan(time) & told[between], np.interp(rows, known, time[known]), time)
 
 
 def _directions(source: _Source) -> np.ndarray:

@@ -7,6 +7,12 @@ from tir.constant import Count, Real
 SMALLEST_LOAD_IN_NEWTONS = Real(20.0, "N", "If all loads of a file are below this, they are in kilonewtons.")
 RARE_SAMPLES = Real(0.01, "-", "Share of samples that spikes spoil; more have a cause, such as a wrong unit.")
 STANDSTILL = Real(0.1, "-", "Share of the usual speed below which the wheel stands.")
+CLOCK_WITHIN_STEP = Real(
+    0.5,
+    "-",
+    "Deviation of the time between two samples from the number of samples between them, in samples: above, their number is "
+    "another one.",
+)
 LIKENESS_OF_UNUSED_HEADING = Real(
     0.8, "-", "Similarity to a channel's name from which an unused column is pointed out."
 )

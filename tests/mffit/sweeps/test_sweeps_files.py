@@ -389,6 +389,41 @@ def test_a_missing_value_of_a_recording_costs_only_its_cell(project):
     assert any('"#DIV/0!" is no reading; treated as missing' in warning for warning in found.warnings)
 
 
+def with_times(project, times):
+    """The project's sweep as a recording whose samples have these cells as times, from the first row on."""
+    text = project.text(NAME).split("\n")
+    rows = [
+        text[0] + ",time_s",
+        *(f"{row},{time}" for row, time in zip(text[1:], times, strict=False) if row),
+    ]
+    project.overwrite(NAME, "\n".join(rows))
+
+
+def test_empty_times_of_samples_between_stated_ones_are_interpolated(project):
+    path = project.write()
+    times = [f"{2.0 + 0.01 * k:.2f}" for k in range(200)]
+    with_times(project, [*times[:2], "", *times[3:5], "", "", *times[7:]])
+    found = load(path)
+    time = sweep_named(found, NAME).time
+    np.testing.assert_allclose(time, 2.0 + 0.01 * np.arange(len(time)), atol=1e-9)
+    assert any(
+        f"{NAME}:4: column time_s: empty in lines 4, 7-8; interpolated at the rate of the recording" in said
+        for said in found.warnings
+    )
+
+
+@pytest.mark.parametrize(
+    ("empty", "later", "lines"),
+    [((2, 5), 5, "line 7"), ((0, 3), 99, "line 2"), ((1, 2, 5), 6, "line 7"), ((0, 1, 4), 5, "lines 2-3, 6")],
+    ids=["at a pause", "the first one", "only the one at a pause", "all of them"],
+)
+def test_empty_times_that_no_others_tell_are_refused_all_at_once(project, empty, later, lines):
+    """``later``: the sample from which on the clock is 0.3 s ahead."""
+    path = project.write()
+    with_times(project, ["" if k in empty else f"{0.01 * k + 0.3 * (k >= later):.2f}" for k in range(200)])
+    assert f": column time_s: empty in {lines}, where the times before and after" in str(refusal(path))
+
+
 @pytest.mark.parametrize(
     ("cells", "values"),
     [
