@@ -272,6 +272,6 @@ def _picture(sniffed: Sniffed, k: int, path: Path) -> None:
     from mffit.report.figures.recording import recording
 
     axes = sniffed.axes[0] if sniffed.axes else "iso"
-    found = sweeps.load(configuration_of(sniffed.recordings[k : k + 1], axes)).sweeps
-    notes = [n for n in sniffed.reading.stretches if n.file == found[0].file]
-    pictures.save(recording(found[0], notes), path)
+    runs = sweeps.load(configuration_of(sniffed.recordings[k : k + 1], axes)).sweeps
+    notes = [n for n in sniffed.reading.stretches if n.file == runs[0].file]
+    pictures.save(recording(runs, notes), path)

@@ -17,21 +17,27 @@ DROPPED = Look(colour=style.CONTRAST, opacity=0.13)
 LINE = Look(colour=style.INK, line="-", width=0.6)
 
 
-def recording(sweep: Sweep, notes: Sequence[StretchNote]) -> Sheet:
-    """One panel per channel; gaps in time are closed and the lines broken there."""
+def recording(runs: Sequence[Sweep], notes: Sequence[StretchNote]) -> Sheet:
+    """One panel per channel of a file, with its runs one after the other; gaps in time are closed and the lines broken there."""
+
+    def whole(name: str) -> np.ndarray:
+        return np.concatenate([getattr(run, name) for run in runs])
+
     channels = {
-        "sideslip [deg]": np.degrees(sweep.alpha),
-        "camber [deg]": np.degrees(sweep.gamma),
-        "load [N]": sweep.Fz,
-        "pressure [kPa]": sweep.p / 1e3,
-        "tread [degC]": sweep.T,
-        "side force [N]": sweep.Fy,
-        "moment [Nm]": sweep.Mz,
+        "sideslip [deg]": np.degrees(whole("alpha")),
+        "camber [deg]": np.degrees(whole("gamma")),
+        "load [N]": whole("Fz"),
+        "pressure [kPa]": whole("p") / 1e3,
+        "tread [degC]": whole("T"),
+        "side force [N]": whole("Fy"),
+        "moment [Nm]": whole("Mz"),
     }
     measured = {name: values for name, values in channels.items() if np.any(np.isfinite(values))}
-    clock = _clock(sweep.time)
-    spans = _spans(sweep.time, clock, notes)
-    broken = gaps(sweep.time)
+    time = whole("time")
+    begins = np.cumsum([len(run.time) for run in runs])[:-1]
+    broken = np.union1d(gaps(time), begins)
+    clock = _clock(time, broken)
+    spans = _spans(whole("line"), clock, notes)
     x = np.insert(clock, broken, clock[broken])
     panels = [
         Panel(
@@ -53,21 +59,21 @@ def recording(sweep: Sweep, notes: Sequence[StretchNote]) -> Sheet:
     )
 
 
-def _spans(time: np.ndarray, clock: np.ndarray, notes: Sequence[StretchNote]) -> list[Span]:
+def _spans(line: np.ndarray, clock: np.ndarray, notes: Sequence[StretchNote]) -> list[Span]:
     """Every stretch that gives points or was dropped, over the clock without gaps."""
     found = []
     for note in notes:
         if note.kind == MOVE and not note.dropped:
             continue
-        first, last = np.searchsorted(time, [note.begin_s, note.end_s])
-        end = clock[min(last, len(clock) - 1)]
-        found.append(Span(first=float(clock[first]), last=float(end), look=KEPT if note.points else DROPPED))
+        first, last = (int(np.argmax(line == one)) for one in (note.first_line, note.last_line))
+        look = KEPT if note.points else DROPPED
+        found.append(Span(first=float(clock[first]), last=float(clock[last]), look=look))
     return found
 
 
-def _clock(time: np.ndarray) -> np.ndarray:
-    """Time (n,) from zero with every gap closed to a step."""
+def _clock(time: np.ndarray, broken: np.ndarray) -> np.ndarray:
+    """Time (n,) from zero with the gap before every ``broken`` sample closed to a step."""
     steps = np.diff(time)
-    steps[gaps(time) - 1] = np.median(steps)
+    steps[broken - 1] = np.median(steps)
     closed: np.ndarray = np.r_[0.0, np.cumsum(steps)]
     return closed

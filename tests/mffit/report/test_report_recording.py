@@ -11,28 +11,33 @@ from mffit.points.stretch import MOVE, SWEEP, StretchNote
 from mffit.report.figures.recording import DROPPED, KEPT, recording
 
 
-def note(kind: str, begin: float, end: float, points: int, dropped: str = "") -> StretchNote:
+def note(kind: str, first: int, last: int, points: int, dropped: str = "") -> StretchNote:
     texts = dict.fromkeys(StretchNote._fields, 0)
     return StretchNote(
-        **texts | {"kind": kind, "begin_s": begin, "end_s": end, "points": points, "dropped": dropped}
+        **texts | {"kind": kind, "first_line": first, "last_line": last, "points": points, "dropped": dropped}
     )
 
 
-@pytest.fixture
-def sheet():
-    """10 s at 10 Hz, with a gap of 100 s in the middle; nothing measured the moment."""
-    time = np.r_[np.arange(50), 1000 + np.arange(50)] / 10.0
-    ramp, none = np.linspace(0.0, 1.0, 100), np.full(100, np.nan)
-    sweep = SimpleNamespace(
+def run_of(time: np.ndarray, first_line: int) -> SimpleNamespace:
+    """A run that measured no moment."""
+    ramp, none = np.linspace(0.0, 1.0, len(time)), np.full(len(time), np.nan)
+    return SimpleNamespace(
         time=time, alpha=np.radians(ramp), gamma=0.0 * ramp, kappa=none, Fz=1e3 + ramp, p=2e5 + ramp, T=none,
-        Fy=-ramp, Mz=none,
+        Fy=-ramp, Mz=none, line=first_line + np.arange(len(time)),
     )  # fmt: skip
-    notes = [
-        note(SWEEP, 0.0, 3.0, 20),
-        note(MOVE, 3.0, 4.0, 0),
-        note(SWEEP, 100.0, 104.0, 0, "drifting"),
-    ]
-    return recording(sweep, notes)
+
+
+HALF = np.arange(50) / 10.0
+GAP = [run_of(np.r_[HALF, 100.0 + HALF], 2)]
+"""10 s at 10 Hz, with a gap of 100 s in the middle."""
+RUNS = [run_of(HALF, 2), run_of(HALF, 52)]
+"""The same as two runs of one file, each of which counts its time from zero."""
+
+
+@pytest.fixture(params=[GAP, RUNS], ids=["gap", "two runs"])
+def sheet(request):
+    notes = [note(SWEEP, 2, 32, 20), note(MOVE, 32, 42, 0), note(SWEEP, 52, 92, 0, "drifting")]
+    return recording(request.param, notes)
 
 
 def test_every_measured_channel_has_a_panel_of_a_readable_height(sheet):
