@@ -78,9 +78,13 @@ def headlines(result: BuildResult) -> list[Headline]:
     )
     fitted = {name for name, a in result.fit.channels.items() if a.n}
     loads = dict.fromkeys(of_model, load)
-    if nominal is not None and not result.on_disc:  # the same numbers as in result.json
-        of_model |= {KEYS[name]: q for name, q in nominal.of_model.items()}
-        loads |= {KEYS[name]: nominal.load for name in nominal.of_model}
+    if nominal is not None:  # the same numbers as in result.json
+        of_result = {KEYS[name]: q for name, q in nominal.of_model.items()}
+        straight = of_result.pop(KEYS["C_alpha_straight"], None)
+        if result.on_disc:  # the tyre's cornering stiffness there
+            of_result = {} if straight is None else {KEYS["C_alpha"]: straight}
+        of_model |= of_result
+        loads |= dict.fromkeys(of_result, nominal.load)
     of_model |= _of_road(result.road)
     tested = Tested.of([tyre])
     for key in filter(tested.varied, DECIDED_BY):

@@ -154,6 +154,18 @@ def test_the_numbers_of_a_flat_track_are_those_of_the_model(tmp_path):
     assert float(found["Peak side force per load mu_y"].split()[0]) == pytest.approx(peak, abs=0.01)
 
 
+def test_the_cornering_stiffness_of_a_disc_is_the_one_in_the_result(result):
+    """Its uncertainty counts the path's curvature and the measured slope, of which the model alone knows nothing."""
+    stated_u, nominal = 742.0, result.measured.nominal
+    straight = Quantity(-19302.0, stated_u, "N/rad", "fitted")
+    measured = replace(result.measured, nominal=replace(nominal, C_alpha_straight=straight))
+    made = replace(result, measured=measured)
+    (one,) = [one for one in headlines(made) if one.name.endswith("C_alpha0")]
+    assert ascii_only(one.value) == "-19300 +- 740 N/rad"
+    assert f"at {rounding.number(nominal.load, 0)} N" in one.note
+    assert ascii_only(one.value) in build_summary(made)
+
+
 def test_a_number_that_was_not_reached_or_not_varied_is_not_stated_as_measured(tmp_path):
     """Sideslip to 5 deg, where the side force still rises, and no camber."""
     result = made_result(rig={"type": "flat-track"}, phi_t=0.0)
