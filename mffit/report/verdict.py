@@ -80,9 +80,9 @@ def headlines(result: BuildResult) -> list[Headline]:
     loads = dict.fromkeys(of_model, load)
     if nominal is not None:  # the same numbers as in result.json
         of_result = {KEYS[name]: q for name, q in nominal.of_model.items()}
-        straight = of_result.pop(KEYS["C_alpha_straight"], None)
+        without_spin = of_result.pop(KEYS["C_alpha_straight"], None)
         if result.on_disc:  # the tyre's cornering stiffness there
-            of_result = {} if straight is None else {KEYS["C_alpha"]: straight}
+            of_result = {} if without_spin is None else {KEYS["C_alpha"]: without_spin}
         of_model |= of_result
         loads |= dict.fromkeys(of_result, nominal.load)
     of_model |= _of_road(result.road)
