@@ -212,7 +212,7 @@ KNOWN_BESIDE_UNKNOWN = Real(
 )
 LEAST_ALTERNATIVE = Real(1e-4, "-", "Weight below which an effect is not listed as an alternative.")
 UNCHANGED_SHARE_OF_U = Real(
-    0.5, "-", "Change of eps_gamma over its uncertainty below which it counts as equal."
+    0.5, "-", "Change of eps_gamma over its uncertainty below which it is called well within it."
 )
 
 # Validation

@@ -223,6 +223,8 @@ class DirectMethodRedone:
         if before is None or after is None:
             return f"eps_gamma cannot be measured {'with' if after else 'even without'} {names}."
         now = _with_u(after.value, after.u)
-        if abs(after.value - before.value) < constants.UNCHANGED_SHARE_OF_U * after.u:
+        if to_uncertainty(before.value, after.u) == to_uncertainty(after.value, after.u):
             return f"eps_gamma stays {now} (k = 1) with {names} corrected: the direct method allows for it."
-        return f"eps_gamma was {_with_u(before.value, before.u)} with {names}; corrected it is {now} (k = 1)."
+        within = abs(after.value - before.value) < constants.UNCHANGED_SHARE_OF_U * after.u
+        told = ", a change well within its uncertainty" if within else ""
+        return f"eps_gamma was {_with_u(before.value, before.u)} with {names}; corrected it is {now} (k = 1){told}."

@@ -240,6 +240,10 @@ def test_every_run_has_words_and_only_a_separating_one_is_recommended(run):
             "stays -0.060 +- 0.050 (k = 1) with backlash corrected",
         ),
         (
+            DirectMethodRedone(("backlash",), Quantity(-0.083, 0.065, "-"), Quantity(-0.063, 0.063, "-")),
+            "was -0.083 +- 0.065 with backlash; corrected it is -0.063 +- 0.063 (k = 1), a change well within its uncertainty.",
+        ),
+        (
             DirectMethodRedone(("backlash", "gain"), WRONG, RIGHT),
             "was 0.200 +- 0.070 with backlash and gain; corrected it is -0.060 +- 0.050 (k = 1).",
         ),
