@@ -21,6 +21,7 @@ from tir.parameters import BY_NAME, TABLE, TURN_SLIP
 from tir.record import TyreRecord
 from tir.targets import FITTYPS, UNKNOWN_DIGIT, fittyps_text, known_target, use_mode_words
 from tir.tyre import Tyre
+from tir.unit_check import in_fitting_units
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,6 +132,7 @@ def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
         If a target is unknown.
     """
     programs = [known_target(name) for name in ([targets] if isinstance(targets, str) else targets)]
+    tyre, of_units = in_fitting_units(tyre)
     found = [
         *tyre.on_reading,
         *_dimensions(tyre),
@@ -149,6 +151,7 @@ def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
                 found += [*_radius(tyre), *_spin(tyre)]
     for target in programs:
         found += target_problems(tyre, target)
+    found += of_units
     found = [_with_line(problem, tyre) for problem in found]
     return sorted(found, key=lambda problem: LEVELS.index(problem.level))
 

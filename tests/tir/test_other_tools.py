@@ -95,6 +95,49 @@ def test_units_in_the_plural_are_the_same_units(tmp_path):
         read(tmp_path, text.replace("newtons", "newtonss"))
 
 
+def in_units(text: str, **words: str) -> str:
+    units = "".join(f"{kind} = '{word}'\n" for kind, word in words.items())
+    return f"[UNITS]\n{units}FORCE = 'newton'\n[MODEL]\nFITTYP = 61\n{text}"
+
+
+PRESSURES_AND_RANGES = (
+    BODY + "\nNOMPRES = 250000\nINFLPRES = 220000\nALPMIN = -0.3\nALPMAX = 0.3\nCAMMIN = -0.9\nCAMMAX = 0.9\n"
+)
+
+
+@pytest.mark.parametrize("word", ["mm", "cm", "inch"])
+def test_a_unit_of_length_that_radius_and_pressures_contradict_is_named_with_the_one_that_fits(
+    tmp_path, word
+):
+    found = check(read(tmp_path, in_units(PRESSURES_AND_RANGES, LENGTH=word)))
+    (error,) = [p for p in found if p.level == "error"]
+    assert (error.name, error.line) == ("LENGTH", 2)
+    assert (
+        "write 'meter', by which UNLOADED_RADIUS is 0.31 m, NOMPRES is 2.5e+05 Pa and INFLPRES is 2.2e+05 Pa"
+        in str(error)
+    )
+    assert not [p for p in found if p.name in ("NOMPRES", "INFLPRES", "UNLOADED_RADIUS")]
+
+
+def test_a_unit_of_length_that_fits_is_believed(tmp_path):
+    text = PRESSURES_AND_RANGES.replace("0.31", "310").replace("250000", "0.25").replace("220000", "0.22")
+    found = check(read(tmp_path, in_units(text, LENGTH="mm")))
+    assert not [p for p in found if p.level == "error" or "contradicts" in p.sentence]
+
+
+def test_degrees_that_the_ranges_contradict_are_named(tmp_path):
+    found = check(read(tmp_path, in_units(PRESSURES_AND_RANGES, LENGTH="meter", ANGLE="deg")))
+    (about,) = [p for p in found if p.name == "ANGLE" and "contradicts" in p.sentence]
+    assert (about.level, about.line) == ("warning", 3)
+    assert (
+        "ALPMAX 0.3 deg, CAMMIN -0.9 deg and CAMMAX 0.9 deg: they look like radians; write 'radians'"
+        in about.sentence
+    )
+    in_degrees = PRESSURES_AND_RANGES.replace("0.3\n", "17\n").replace("0.9", "50")
+    found = check(read(tmp_path, in_units(in_degrees, LENGTH="meter", ANGLE="deg")))
+    assert not [p for p in found if p.name == "ANGLE" and "contradicts" in p.sentence]
+
+
 def test_two_pressures_in_two_units_contradict_one_another(tmp_path):
     found = check(
         read(
