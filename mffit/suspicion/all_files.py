@@ -12,8 +12,18 @@ from mffit.constants import HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, STRAIGHT, 
 from mffit.points import Points, levels
 from mffit.suspicion import constants
 from mffit.suspicion.groups import readings_of
+from mffit.suspicion.rereadings import REVERSALS
 from mffit.suspicion.rule import Finding, Outcome, rule
-from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, line, overturning_slope, pooled, signatures
+from mffit.suspicion.slopes import (
+    SIGNS,
+    Signatures,
+    at_zero,
+    contradictions,
+    line,
+    overturning_slope,
+    pooled,
+    signatures,
+)
 
 
 @rule(
@@ -38,8 +48,7 @@ def copied_sweep(points: Points, config: Config) -> Iterator[Finding]:
 
 @rule(
     id="reversed-file",
-    sentence="{what} {where}, against all the others: its sign or its direction of rolling looks reversed; correct the file, "
-    'write direction = "backward" in its [[sweep]], or map {column} with scale = -1 under [sweep.columns]',
+    sentence="{what} {where}, against all the others: {cause}",
 )
 def reversed_file(points: Points, config: Config) -> Iterator[Finding]:
     """Signs of the slopes, file by file, with the scatter of all files."""
@@ -48,16 +57,28 @@ def reversed_file(points: Points, config: Config) -> Iterator[Finding]:
         return
     each = [signatures(points.select(points.file == index)) for index in files]
     broken = []
-    for index, own in zip(files, _with_common_scatter(each), strict=True):
+    for k, own in enumerate(_with_common_scatter(each)):
         found = next(((sign, finding.column) for sign in SIGNS for finding in sign.find(own)), None)
         if found is not None:
-            broken.append((points.files[index], *found))
+            broken.append((k, *found))
     if not broken:
         return
-    name, sign, column = broken[0]
-    alike = [other for other, *rest in broken[1:] if rest == [sign, column]]
+    k, sign, column = broken[0]
+    alike = [points.files[files[other]] for other, *rest in broken[1:] if rest == [sign, column]]
     where = f"in this file and in {', '.join(alike)}" if alike else "in this file alone"
-    yield Finding({"what": sign.sentence, "where": where, "column": column}, file=name, column=column)
+    causes = []
+    for mistake in REVERSALS:
+        undone = signatures(mistake.undone(points.select(points.file == files[k]), {}))
+        if mistake.column == "direction":  # a wheel that leans reads the same side force both ways
+            undone = undone._replace(camber=each[k].camber)
+        if not contradictions(_with_common_scatter([*each[:k], undone, *each[k + 1 :]])[k]):
+            causes.append(mistake)
+    said = " Or ".join(f"it looks like {mistake.looks}: {mistake.remedy}." for mistake in causes)
+    cause = said.removesuffix(".") or "a sign looks reversed; correct the file"
+    if len({mistake.column for mistake in causes}) == 1:
+        column = causes[0].column
+    facts = {"what": sign.sentence, "where": where, "cause": cause}
+    yield Finding(facts, file=points.files[files[k]], column=column)
 
 
 def _with_common_scatter(each: list[Signatures]) -> list[Signatures]:

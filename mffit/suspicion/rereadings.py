@@ -108,6 +108,25 @@ SIDESLIP = ("alpha", "alpha_deg", "its sideslip")
 CAMBER = ("gamma", "gamma_deg", "its camber")
 PRESSURE = ("p", "p_kPa", "its pressure")
 
+REVERSALS: tuple[Mistake, ...] = (
+    *(_of_sign(*channel) for channel in (SIDESLIP, CAMBER, FORCE, MOMENT, DRIVE, OVERTURNING, ROLLING)),
+    _reversed(
+        "the direction of rolling undeclared or wrong",
+        "direction",
+        'write direction = "backward" (or "forward") in its [[sweep]]',
+        "direction",
+    ),
+    _reversed(
+        "side force and moment in other axes", "Fy_N", "correct the signs of Fy_N and Mz_Nm", "Fy", "Mz"
+    ),
+    _reversed(
+        "sideslip, side force and moment in other axes",
+        "alpha_deg",
+        "correct the signs of alpha_deg, Fy_N and Mz_Nm",
+        *("alpha", "Fy", "Mz"),
+    ),
+)
+"""Signs of channels, alone or together, and the direction of rolling."""
 MISTAKES: tuple[Mistake, ...] = (
     *(_in_unit(*angle, unit="rad", expected="deg") for angle in (SIDESLIP, CAMBER)),
     _in_unit(*PRESSURE, unit="psi", expected="kPa"),
@@ -130,22 +149,7 @@ MISTAKES: tuple[Mistake, ...] = (
         for moment in (MOMENT, OVERTURNING, ROLLING)
         for unit in ("N mm", "kN m", "lbf ft")
     ),
-    *(_of_sign(*channel) for channel in (SIDESLIP, CAMBER, FORCE, MOMENT, DRIVE, OVERTURNING, ROLLING)),
-    _reversed(
-        "the direction of rolling undeclared or wrong",
-        "direction",
-        'write direction = "backward" (or "forward") in its [[sweep]]',
-        "direction",
-    ),
-    _reversed(
-        "side force and moment in other axes", "Fy_N", "correct the signs of Fy_N and Mz_Nm", "Fy", "Mz"
-    ),
-    _reversed(
-        "sideslip, side force and moment in other axes",
-        "alpha_deg",
-        "correct the signs of alpha_deg, Fy_N and Mz_Nm",
-        *("alpha", "Fy", "Mz"),
-    ),
+    *REVERSALS,
     _reversed(
         "the tyre turned on its rim",
         "mount",
