@@ -133,6 +133,8 @@ CHARACTERISTICS = {
     "r_e_m": DIRECT["r_e"],
 }
 """Characteristics by which two tyres are compared, by their key in JSON."""
+OF_ROAD = {key: name for name in ON_ROAD for key, known in CHARACTERISTICS.items() if known is DIRECT[name]}
+"""Of these, the ones that a build states on the road, with their names there; a build as a whole has the lesser of both sides."""
 MODEL = {
     "Fz": CONDITIONS["Fz_N"],
     "alpha": CONDITIONS["alpha_deg"],
@@ -150,9 +152,12 @@ MODEL = {
 }
 """Inputs and outputs of the tyre model, by their names in tir; shown in these units, computed in SI."""
 COMPARED = {
-    key: CHARACTERISTICS[key]
+    key: CHARACTERISTICS[key]._replace(
+        word=CHARACTERISTICS[key].word + " of the lesser side" * (key in OF_ROAD)
+    )
     for key in ("C_alpha_N_per_rad", "C_gamma_N_per_rad", "C_Mz_alpha_Nm_per_rad", "mu_y", "Mz_peak_Nm")
 }
-"""Characteristics of the tyres of a fleet: of the fitted model at nominal load and pressure on a straight path."""
+"""Characteristics of the tyres of a fleet at nominal load and pressure on a straight path: those of :data:`OF_ROAD` as on the
+road, the others of the fitted model."""
 DIAGNOSED = {"chi2": QuantityName("chi-squared", "χ²", "-")}
 """Statistics of a diagnosis."""

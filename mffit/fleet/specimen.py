@@ -16,7 +16,10 @@ import tir
 from mffit.errors import InputError
 from mffit.fit.priors import scatter
 from mffit.numbers import Numbers, from_json
+from mffit.prediction.road import lesser
+from mffit.quantities import DIRECT, OF_ROAD
 from mffit.rig_errors import BESIDE, DECLARED, OF_RUN, error_of, number_of
+from mffit.rounding import AtLeast
 from tir import Quantity, Tyre
 
 RESULT, RESOLVED, INFORMATION = "result.json", "resolved.toml", "information.json"
@@ -44,6 +47,8 @@ class Specimen:
     in_doubt: tuple[str, ...] = ()  #: points that the engineer should check
     epsilon_direct: Quantity | None = None  #: eps_gamma of the direct method
     setups: tuple[str, ...] = ()  #: names of the set-ups that its sweeps declare
+    on_road: Mapping[str, Quantity] = field(default_factory=dict)
+    """Peaks on the road, of the lesser side, by their keys in ``mffit.quantities.OF_ROAD``."""
     budget: Mapping[str, float] = field(default_factory=dict)
     """Change of the measured eps_gamma by one standard uncertainty of each source of its budget."""
 
@@ -157,6 +162,7 @@ def read(folder: str | Path) -> Specimen:
                 row["source"]: math.copysign(row["contribution"], row["sensitivity"])
                 for row in spin.get("budget", ())
             },
+            on_road=_on_road(result.get("road")),
             setups=tuple(dict.fromkeys(s["setup"] for s in resolved["sweep"] if "setup" in s)),
         )
     except (OSError, LookupError, TypeError, ValueError, AttributeError, StopIteration):
@@ -168,6 +174,23 @@ def read(folder: str | Path) -> Specimen:
 def _stated(spin: Mapping[str, Any], key: str) -> Quantity | None:
     value = spin[key]
     return None if value is None else Quantity(float(value), float(spin[f"u_{key}"]), "-")
+
+
+def _on_road(road: Mapping[str, Any] | None) -> dict[str, Quantity]:
+    """The peaks of the record of the road, of the lesser side; empty without a record."""
+    if road is None:
+        return {}
+    found = {}
+    for key, name in OF_ROAD.items():
+        unit = DIRECT[name].unit_behind
+        sides = [side["_".join(filter(None, (name, unit)))] for side in road["sides"].values()]
+        found[key] = lesser(None if side is None else _on_side(side, unit) for side in sides)
+    return {key: q for key, q in found.items() if q is not None}
+
+
+def _on_side(side: Mapping[str, Any], unit: str) -> Quantity:
+    kind = AtLeast if side.get("at_least") else Quantity
+    return kind(float(side["value"]), float(side["u"]), unit)
 
 
 def read_numbers(path: Path) -> Numbers | None:

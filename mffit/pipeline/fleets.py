@@ -24,7 +24,7 @@ from mffit.output import output_folder, refuse_early
 from mffit.pipeline.build_output import numbers
 from mffit.pipeline.fleet_notes import fleet_notes, nominal_conditions, note_on_sharing
 from mffit.progress import Progress, silent
-from mffit.quantities import COMPARED
+from mffit.quantities import COMPARED, OF_ROAD
 from mffit.rig_errors import OF_RUN
 from mffit.rounding import AtLeast
 from mffit.viewer.named import tell_apart
@@ -117,13 +117,14 @@ def _plainly_named(found: Sequence[Numbers]) -> list[Numbers]:
 
 def _row(specimen: Specimen, rig: int, together: TyreEstimate | None) -> Row:
     """A build with its own estimate, and that ``together`` with the other tyres of its rig."""
-    own_numbers = numbers(specimen.tyre, turn_slip=specimen.on_disc, known=specimen.numbers)
+    of_file = numbers(specimen.tyre, turn_slip=specimen.on_disc, known=specimen.numbers)
+    stated = {key: q for key, q in of_file.items() if key not in OF_ROAD} | dict(specimen.on_road)
     own = _estimated([specimen])
     alone = None if own is None else own.tyres[0]
     return Row(
         specimen,
         rig,
-        numbers={key: own_numbers[key] for key in COMPARED if key in own_numbers},
+        numbers={key: stated[key] for key in COMPARED if key in stated},
         alone=_epsilon(alone),
         together=_epsilon(together),
         strain={} if together is None else together.strain,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,6 +49,13 @@ class RoadSide:
         Quantity | None
     )  #: largest side force over the load; :class:`AtLeast` what was reached if it is no peak
     M_zmax: Quantity | None  #: largest size of the aligning moment
+
+
+def lesser(sides: Iterable[Quantity | None]) -> Quantity | None:
+    """The smaller of a number's values on both sides, which stands for the tyre as a whole; None if one is not known."""
+    known = list(sides)
+    found = [one for one in known if one is not None]
+    return min(found, key=lambda one: one.value) if found and len(found) == len(known) else None
 
 
 @dataclass(frozen=True, slots=True)

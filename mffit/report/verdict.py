@@ -7,7 +7,8 @@ from typing import NamedTuple
 from mffit.comparison.characteristics import DECIDED_BY, Tested, characteristics
 from mffit.measured.wording import SOURCES
 from mffit.prediction import OnRoad
-from mffit.quantities import CHANNELS, CHARACTERISTICS, DIRECT, KEYS, ON_ROAD, QuantityName
+from mffit.prediction.road import lesser
+from mffit.quantities import CHANNELS, CHARACTERISTICS, DIRECT, KEYS, OF_ROAD, QuantityName
 from mffit.results import BuildResult
 from mffit.rounding import AtLeast, number, stated, times
 from mffit.tested import NO_FX, lacks_fx
@@ -85,10 +86,12 @@ def headlines(result: BuildResult) -> list[Headline]:
             of_result = {} if without_spin is None else {KEYS["C_alpha"]: without_spin}
         of_model |= of_result
         loads |= dict.fromkeys(of_result, nominal.load)
-    of_model |= _of_road(result.road)
+    of_road = _of_road(result.road)
+    of_model |= of_road
     tested = Tested.of([tyre])
     for key in filter(tested.varied, DECIDED_BY):
-        value, note = of_model[key], f"of the model at {number(loads[key], 0)} N, straight path"
+        value, at = of_model[key], f"at {number(loads[key], 0)} N, straight path"
+        note = f"{'on the lesser side' if key in of_road else 'of the model'} {at}"
         if DECIDED_BY[key].channel in fitted and value.u:
             end = f"at {tested.end(key)}, the end of the tested range" if isinstance(value, AtLeast) else ""
             straight = result.on_disc and key == KEYS["C_alpha"]
@@ -101,14 +104,10 @@ def _of_road(road: OnRoad | None) -> dict[str, Quantity]:
     """Characteristics of the tyre on the road, the lesser of both sides."""
     if road is None:
         return {}
-    found = {}
-    for key, known in CHARACTERISTICS.items():
-        sides = [
-            getattr(side, name) for name in ON_ROAD if DIRECT[name] is known for side in road.sides.values()
-        ]
-        if sides and None not in sides:
-            found[key] = min(sides, key=lambda one: one.value)
-    return found
+    found = {
+        key: lesser(getattr(side, name) for side in road.sides.values()) for key, name in OF_ROAD.items()
+    }
+    return {key: q for key, q in found.items() if q is not None}
 
 
 def _headline(known: QuantityName, value: Quantity, note: str, reached: str = "") -> Headline:

@@ -28,6 +28,7 @@ from mffit.pipeline import many, workers
 from mffit.pipeline.many import is_current
 from mffit.results import BuildOutcome
 from tests.browser import assert_readable
+from tir import Quantity
 
 HOSTILE = "a<img src=x onerror=alert(1)>b"
 
@@ -268,6 +269,29 @@ def test_the_fleet_compares_and_reduces_uncertainties(compared, folders):
     assert "load-cell zero of Fy" in said
     assert "F0_N" not in said + (out / "fleet.html").read_text()
     assert found["notes"] == []
+
+
+def test_the_peaks_of_a_fleet_are_those_of_the_road_on_its_lesser_side(compared, folders, tmp_path):
+    """Value, uncertainty and "at least" as in each build's result.json; whichever side is smaller."""
+    (out, (_, said, _)), (raised, other) = compared, (tmp_path / "raised", folders[1])
+    sides = json.loads((other / "result.json").read_text())["road"]["sides"]
+    peaks = {"mu_y": "mu_y", "Mz_peak_Nm": "M_zmax_Nm"}
+    first = json.loads((out / "fleet.json").read_text())["tyres"][1]
+    for key, name in peaks.items():
+        assert first[key] == min((side[name] for side in sides.values()), key=lambda one: one["value"])
+    assert "mu_y of the lesser side" in said
+    shutil.copytree(other, raised)
+    for least in sides:
+        result = json.loads((other / "result.json").read_text())
+        for side, content in result["road"]["sides"].items():
+            content["mu_y"] = {"value": 1.1, "u": 0.03} if side == least else {"value": 1.2, "u": 0.01}
+        (raised / "result.json").write_text(json.dumps(result))
+        grip = fleet.read(raised).on_road["mu_y"]
+        assert (type(grip), grip.value, grip.u) == (Quantity, 1.1, 0.03)
+    result["road"] = None
+    (raised / "result.json").write_text(json.dumps(result))
+    found = pipeline.fleet([other, raised])
+    assert not peaks.keys() & found.rows[1].numbers.keys()
 
 
 def test_a_stiffness_carries_the_uncertainty_of_its_coefficients(compared, folders):

@@ -9,7 +9,7 @@ from mffit import rounding
 from mffit.constants import NAMED_IN_SENTENCE
 from mffit.errors import shortened
 from mffit.points.left_out import together
-from mffit.quantities import CHANNELS, COMPARED, CONDITIONS, DIRECT
+from mffit.quantities import CHANNELS, COMPARED, CONDITIONS, DIRECT, OF_ROAD
 from mffit.report import constants, words
 from mffit.report.text import layout
 from mffit.rig_errors import meaning_of
@@ -36,6 +36,7 @@ def templates(*, escaped: bool) -> Environment:
         "channels": CHANNELS,
         "coefficients": BY_NAME,
         "compared": COMPARED,
+        "of_road": OF_ROAD,
         "conditions": CONDITIONS,
         "direct": DIRECT,
         "meaning_of": meaning_of,

@@ -52,6 +52,6 @@ def test_the_page_says_first_in_which_numbers_the_tyres_differ():
     rows = [Row(SimpleNamespace(epsilon_gamma=None, epsilon_direct=None), 0, one) for one in numbers]
     assert headline(Fleet(tuple(rows), (), ())) == (
         "The tyres differ by more than their uncertainty in cornering stiffness; they agree within their uncertainty in peak "
-        "side force per load."
+        "side force per load of the lesser side."
     )
     assert headline(Fleet((rows[0],), (), ())) == "No number is known of two tyres."
