@@ -60,7 +60,11 @@ def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
         coefficients=_coefficients(first, second, shared),
         curves=tuple(curves),
         sweeps=(),
-        notes=(*wording.notes_between(first, second, shared), *wording.notes_on_peaks(numbers, tested)),
+        notes=(
+            *wording.notes_between(first, second, shared),
+            *wording.notes_on_peaks(numbers, tested),
+            *(wording.note_on_own_peaks(numbers) if first.build or second.build else ()),
+        ),
         apart=wording.apart(first, second),
     )
 

@@ -10,7 +10,16 @@ from mffit.comparison.of_rig import ExplainedByRig
 from mffit.comparison.record import ComparedSubject, Comparison, Difference, Shared
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.at_nominal import Nominal
-from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, KEYS, SIDEWAYS, QuantityName
+from mffit.quantities import (
+    CHANNELS,
+    CHARACTERISTICS,
+    CONDITIONS,
+    DIRECT,
+    KEYS,
+    OF_ROAD,
+    SIDEWAYS,
+    QuantityName,
+)
 from mffit.rig_errors import shown, words_of
 from mffit.rounding import AtLeast, stated
 from tir import Quantity
@@ -27,7 +36,10 @@ def quantity(row: Difference) -> QuantityName:
     if row.load is None:
         known = BY_NAME[row.key]
         return QuantityName(known.description, row.key, known.unit)
-    return CHARACTERISTICS.get(row.key) or OF_DIRECT[row.key]
+    known = CHARACTERISTICS.get(row.key) or OF_DIRECT[row.key]
+    if row.key in OF_ROAD:  # a build's road states the best estimate under the plain name
+        return known._replace(word=f"{known.word} of the file")
+    return known
 
 
 def headline(found: Comparison) -> str:
@@ -182,6 +194,16 @@ def notes_on_peaks(numbers: Iterable[Difference], tested: Tested) -> Iterator[st
     ends = {tested.end(row.key) for row in numbers if row.at_least_first or row.at_least_second}
     if ends:
         yield f'"At least": the curve does not fall up to the end of the slip compared, {listed(sorted(ends))}.'
+
+
+def note_on_own_peaks(numbers: Iterable[Difference]) -> Iterator[str]:
+    """A remark on the peaks that a build states on its road under the plain name."""
+    named = [CHARACTERISTICS[key].ascii for key in OF_ROAD if any(row.key == key for row in numbers)]
+    if named:
+        yield (
+            f"{listed(named)} are those of each file's own curve at positive sideslip, within what both were tested to. The road "
+            "in the report of a build states the best estimate for both sides; its uncertainty includes that of the model error."
+        )
 
 
 def note_on_temperature(name: str, T_ref: float) -> str:

@@ -27,6 +27,7 @@ from mffit.errors import InputError
 from mffit.fleet import Specimen
 from mffit.numbers import Numbers
 from mffit.pipeline.build_output import write_build
+from mffit.quantities import CHARACTERISTICS, DIRECT
 from mffit.rounding import AtLeast, stated
 from mffit.tested import words_on_tested
 from tests.browser import assert_readable
@@ -113,6 +114,21 @@ def test_a_comparison_says_where_the_readings_of_both_end():
     )
     content = as_json.document(found)["numbers"]
     assert {one["key"] for one in content if one["at_least_first"]} == {"mu_y"}
+
+
+def test_peaks_of_a_file_have_another_name_than_those_of_a_road():
+    """Reason and side are stated where a build, which has a road, is on either side; two plain files have none."""
+    one, other = (ComparedSubject(name, reaching(truth(), 14.0), False) for name in "ab")
+    row = by_key(between(one, other))["mu_y"]
+    assert wording.quantity(row).word == f"{DIRECT['mu_y'].word} of the file"
+    assert wording.quantity(by_key(between(one, other))["trail_m"]).word == CHARACTERISTICS["trail_m"].word
+    of_build = replace(other, build=moved("b", "may", {}))
+    for sides, said in (((one, other), 0), ((one, of_build), 1), ((of_build, one), 1)):
+        notes = [note for note in between(*sides).notes if "positive sideslip" in note]
+        assert len(notes) == said
+        assert all(note.startswith("mu_y and M_zmax are those of each file") for note in notes)
+    short = [replace(side, tyre=reaching(truth(), 0.1)) for side in (one, of_build)]
+    assert not any("positive sideslip" in note for note in between(*short).notes)
 
 
 def test_without_sideslip_there_is_no_largest_side_force():
