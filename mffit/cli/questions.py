@@ -82,7 +82,7 @@ def diagnose(tyre_toml: Path, model: Path | None, out: Path, repair_all: bool, v
     files = ("diagnosis.html", "diagnosis.json", *text.models_written(diagnosis))
     voice.answer(diagnosis, text.diagnosis_summary(diagnosis), out, *files)
     if not diagnosis.trusted:
-        voice.distrust(f"{diagnosis.model_after} is not to be trusted: see above")
+        voice.distrust(f"{diagnosis.file_said} is not to be trusted: see above")
 
 
 @click.command()

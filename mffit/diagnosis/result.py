@@ -164,6 +164,11 @@ class Diagnosis(ReadOnlyArrays, Brief):
         return f"{self.name}.tir" if self.delivers or self.written_anyway else self.given_file
 
     @property
+    def file_said(self) -> str:
+        """Bare name of the property file to use, as sentences say it: its readers are in any folder."""
+        return self.model_after.rpartition("/")[2]
+
+    @property
     def steps(self) -> tuple[GapStep, ...]:
         """The gap as given, with one repaired effect after the other, and with the coefficients estimated with them."""
         check = self.validation

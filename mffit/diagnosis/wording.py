@@ -114,7 +114,7 @@ def advice(diagnosis: Diagnosis) -> list[str]:
     def names(*kinds: str) -> str:
         return listed([one.effect.name for one in diagnosis.repaired if one.effect.kind in kinds])
 
-    file, rig, beside = diagnosis.model_after, names("rig"), names("environment")
+    file, rig, beside = diagnosis.file_said, names("rig"), names("environment")
     if diagnosis.delivers:
         found = [f"Use {file}: it contains {names('tyre')}."]
     elif reasons(diagnosis):
@@ -330,7 +330,7 @@ def remedy(found: AcceptedEffect, diagnosis: Diagnosis) -> str:
         return "switch the simulation's turn slip on"
     if not effect.remedy:
         said = (TO_DO if found.repaired else NOT_REPAIRED).get(effect.kind, "")
-        return said.format(file=diagnosis.model_after)
+        return said.format(file=diagnosis.file_said)
     signs = diagnosis.signs
     several = [free.name for free in effect.free if OF_RUN in free.name and not effect.runs_written_out]
     if not several:

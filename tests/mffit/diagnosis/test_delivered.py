@@ -16,6 +16,7 @@ import mffit
 from mffit.diagnosis.rest import Answer
 from mffit.effects import CATALOG
 from mffit.pipeline.diagnosing import write_diagnosis
+from mffit.report import text
 
 
 @pytest.mark.parametrize(
@@ -58,8 +59,16 @@ def test_errors_of_the_rig_change_no_file(of_the_rig):
     assert (out / written["model_after"]).resolve() == given.resolve()
     assert written["apart"] == []
     file, rig = written["advice"]
-    assert file.startswith("Keep ../../given.tir")
+    assert file.startswith("Keep given.tir")
     assert rig.startswith("The rest is your rig: ")
+
+
+def test_sentences_say_the_bare_name_of_the_file(of_the_rig):
+    """Who reads the terminal is in another folder than the output, from which the path of JSON starts."""
+    found, out, _ = of_the_rig
+    for said in (text.diagnosis_summary(found), (out / "diagnosis.html").read_text(encoding="utf-8")):
+        assert "given.tir" in said
+        assert "../given.tir" not in said
 
 
 def test_a_corrected_file_of_an_earlier_run_does_not_stay(of_the_rig):

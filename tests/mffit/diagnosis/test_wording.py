@@ -168,7 +168,7 @@ def test_advice_names_the_file_the_rig_and_the_run(camber):
     file, rig, beside, run = wording.advice(
         replace(camber, effects=(axis, warm), delivers=False, given_file="../base.tir")
     )
-    assert file == "Keep ../base.tir: nothing in it is corrected."
+    assert file == "Keep base.tir: nothing in it is corrected."
     assert rig.startswith(
         "The rest is your rig: sideslip axis misaligned. Correct these readings, or mend the rig"
     )
