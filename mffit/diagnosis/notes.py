@@ -88,7 +88,7 @@ class TakenOff:
 
     @property
     def sentence(self) -> str:
-        return f"{self.said[:1].upper()}{self.said[1:]}. The gap before has it; all else is without it."
+        return f"{self.said[:1].upper()}{self.said[1:]}. The gap of all readings, uncorrected, has it; all else is without it."
 
 
 @dataclass(frozen=True, slots=True)

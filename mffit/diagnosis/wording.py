@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 
 from mffit.as_json import Json, document
 from mffit.diagnosis import constants
@@ -257,8 +258,24 @@ def _with_ties(found: AcceptedEffect) -> str:
 
 
 def notes(diagnosis: Diagnosis) -> list[str]:
-    """The zeros of set-ups, if there are several, and all notes, as sentences."""
-    return [*_zeros(diagnosis), *(remark.sentence for remark in diagnosis.notes)]
+    """The zeros of set-ups, if there are several, a gap that grows, and all notes, as sentences."""
+    return [*_grown(diagnosis), *_zeros(diagnosis), *(remark.sentence for remark in diagnosis.notes)]
+
+
+def _grown(diagnosis: Diagnosis) -> list[str]:
+    """A sentence on effects that widen the gap until the coefficients are estimated anew; none if no effect does."""
+    steps = diagnosis.steps if diagnosis.coefficients else ()
+    wider = [
+        after.name
+        for before, after in pairwise(steps[:-1])
+        if after.gap.chi2_per_dof > before.gap.chi2_per_dof
+    ]
+    if not wider:
+        return []
+    return [
+        f"The gap grows with {listed(wider)} alone, because the given coefficients make up for part of it; estimated anew, they "
+        "no longer do."
+    ]
 
 
 def source(noise: Noise) -> str:

@@ -10,7 +10,7 @@ from report_toys import TRUE, made_config, made_points, programme, read_page
 
 import tir
 from mffit.constants import TERMINAL_LINES, TERMINAL_WIDTH
-from mffit.diagnosis import Asked, diagnose
+from mffit.diagnosis import Asked, diagnose, wording
 from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.rest import Answer
 from mffit.diagnosis.ties import SeparatingRun, Separation
@@ -232,6 +232,25 @@ def test_the_gap_is_shown_effect_by_effect(misaligned):
             [misaligned.validation.gap_before.rms(name), misaligned.validation.gap_after.rms(name)]
         )
         assert panel.guides[0].at == misaligned.noise.typical(name)
+
+
+def test_the_table_starts_from_the_gap_of_the_headline(misaligned):
+    """Readings without weight widen the gap of all readings, and have a row of their own."""
+    wider = dataclasses.replace(misaligned.gap_before, rmse={"Fy": 999.0, "Mz": 99.0})
+    for found, more in ((misaligned, 0), (dataclasses.replace(misaligned, gap_before=wider), 1)):
+        said = text.diagnosis_summary(found)
+        (row,) = (line.split() for line in said.splitlines() if line.startswith("before "))
+        assert f"instead of {row[1]} N" in found.headline
+        assert said.count("all readings, uncorrected") == said.count("999") == more
+
+
+def test_a_gap_that_grows_is_explained(misaligned):
+    (effect,) = misaligned.effects
+    wide = dataclasses.replace(misaligned.gap_examined, chi2_per_dof=2 * misaligned.gap_examined.chi2_per_dof)
+    anew = dataclasses.replace(misaligned, coefficients={"PKY1": (-20.0, 0.1)})
+    grown = dataclasses.replace(anew, effects=(dataclasses.replace(effect, gap_after=wide),))
+    assert "The gap grows with sideslip axis misaligned alone" in " ".join(wording.notes(grown))
+    assert "The gap grows" not in " ".join(wording.notes(anew))
 
 
 def test_one_box_has_the_verdict_and_pictures_follow_it(misaligned, unknown, clean, tmp_path):
