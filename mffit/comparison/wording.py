@@ -36,10 +36,10 @@ def quantity(row: Difference) -> QuantityName:
     if row.load is None:
         known = BY_NAME[row.key]
         return QuantityName(known.description, row.key, known.unit)
-    known = CHARACTERISTICS.get(row.key) or OF_DIRECT[row.key]
+    named = CHARACTERISTICS.get(row.key) or OF_DIRECT[row.key]
     if row.key in OF_ROAD:  # a build's road states the best estimate under the plain name
-        return known._replace(word=f"{known.word} of the file")
-    return known
+        return named._replace(word=f"{named.word} of the file")
+    return named
 
 
 def headline(found: Comparison) -> str:
