@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 INK = "#1c2833"
 MUTED = "#5d6d7b"
@@ -48,11 +48,24 @@ SETTINGS: dict[str, Any] = {
 }
 
 
-def ramp(levels: Iterable[float]) -> dict[float, str]:
-    """A colour per level, dark to light in order of the levels; the lightest cannot be seen on white and is left out."""
+class Range(NamedTuple):
+    """Part of a colour map of matplotlib, dark to light; the lightest colours cannot be seen on white."""
+
+    name: str
+    first: float
+    last: float
+
+
+COLD = Range("viridis", 0.0, 0.8)
+WARM = Range("plasma", 0.4, 0.85)
+"""Colours of another quantity in the same picture: no colour is both of these."""
+
+
+def ramp(levels: Iterable[float], colours: Range = COLD) -> dict[float, str]:
+    """A colour per level, dark to light in order of the levels."""
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
 
-    ordered = sorted(levels)
-    steps = max(len(ordered) - 1, 1)
-    return {level: to_hex(colormaps["viridis"](0.8 * k / steps)) for k, level in enumerate(ordered)}
+    ordered, found = sorted(levels), colormaps[colours.name]
+    step = (colours.last - colours.first) / max(len(ordered) - 1, 1)
+    return {level: to_hex(found(colours.first + step * k)) for k, level in enumerate(ordered)}

@@ -116,8 +116,12 @@ def _held(curve: Curve) -> str:
 
 
 def _ramps(drawn: Sequence[Curve]) -> dict[str, dict[float, str]]:
-    """By angle that is held, the colour of each of its values."""
-    return {name: style.ramp({c.held for c in drawn if _held(c) == name}) for name in labels.ANGLES}
+    """By angle that is held, the colour of each of its values; a single one needs no colour of its own, nor a key."""
+    found = {}
+    for name, colours in {"gamma": style.COLD, "alpha": style.WARM}.items():
+        values = {c.held for c in drawn if _held(c) == name}
+        found[name] = style.ramp(values, colours) if len(values) > 1 else dict.fromkeys(values, style.MUTED)
+    return found
 
 
 def _keys(ramps: Mapping[str, Mapping[float, str]]) -> dict[str, Look]:

@@ -309,6 +309,12 @@ def test_a_logarithmic_bar_begins_at_the_left_end():
     assert axes.get_xlim() == (1.0, 1e4)
 
 
+def test_no_colour_is_that_of_two_held_angles():
+    """A legend names a colour once: cambers and sideslips share none, however many there are."""
+    for n in range(1, 12):
+        assert not set(style.ramp(range(n)).values()) & set(style.ramp(range(12), style.WARM).values())
+
+
 def test_levels_have_colours_from_dark_to_light():
     ramp = style.ramp([10.0, -10.0, 0.0])
     assert list(ramp) == [-10.0, 0.0, 10.0]
