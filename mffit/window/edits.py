@@ -72,7 +72,7 @@ def leave_out(text: str, *, readings: Sequence[Mapping[str, Any]], why: str) -> 
 
 
 def take_back(text: str, *, readings: Sequence[Mapping[str, Any]]) -> str:
-    """The text with readings removed from ``[fit] exclude``; an entry without lines goes."""
+    """The text with readings removed from ``[fit] exclude``; an entry without lines goes, and so does an empty list."""
 
     def change(document: Any) -> None:
         entries = _exclude(document)
@@ -85,6 +85,8 @@ def take_back(text: str, *, readings: Sequence[Mapping[str, Any]]) -> str:
                     del entries[k]
                 elif kept != list(_ranges(entries[k])):
                     entries[k]["lines"] = _lines(kept)
+        if not entries:
+            del document["fit"]["exclude"]
 
     return _edited(text, change)
 

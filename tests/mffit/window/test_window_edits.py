@@ -120,7 +120,7 @@ def test_readings_are_taken_back():
         tomllib.loads(take_back(TEXT, readings=[reading("a.csv", 41)]))["fit"]["exclude"][0]["lines"]
         == "39-40, 42-44"
     )
-    assert tomllib.loads(take_back(TEXT, readings=[reading("a.csv", 30, 50)]))["fit"]["exclude"] == []
+    assert "exclude" not in tomllib.loads(take_back(TEXT, readings=[reading("a.csv", 30, 50)]))["fit"]
     assert take_back(TEXT, readings=[reading("b.csv", 41)]) == TEXT
 
 
