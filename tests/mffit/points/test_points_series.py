@@ -244,7 +244,7 @@ def test_a_recording_without_steady_stretches_is_refused_with_the_remedy(project
     project.tables.clear()
     project.config["sweep"].clear()
     project.add("moving.csv", series(np.array([-8.0, 8.0]), hold=0.5))
-    with pytest.raises(InputError, match="time_s"):
+    with pytest.raises(InputError, match="hold every set-point"):
         load(project)
 
 

@@ -55,7 +55,7 @@ def page(browser) -> Any:
 
 def shown(browser: Any) -> Any:
     """The browser once it has unpacked and drawn the points of a fit."""
-    until(lambda: ask(browser, SHOWN) and ask(browser, "mffit.data().coefficients.length > 0"))
+    until(lambda: ask(browser, SHOWN) and ask(browser, "mffit.data()?.coefficients.length > 0"))
     return browser
 
 
