@@ -48,7 +48,7 @@ SETTINGS: dict[str, Any] = {
 }
 
 
-class Range(NamedTuple):
+class ColourRange(NamedTuple):
     """Part of a colour map of matplotlib, dark to light; the lightest colours cannot be seen on white."""
 
     name: str
@@ -56,12 +56,12 @@ class Range(NamedTuple):
     last: float
 
 
-COLD = Range("viridis", 0.0, 0.8)
-WARM = Range("plasma", 0.4, 0.85)
+COLD = ColourRange("viridis", 0.0, 0.8)
+WARM = ColourRange("plasma", 0.4, 0.85)
 """Colours of another quantity in the same picture: no colour is both of these."""
 
 
-def ramp(levels: Iterable[float], colours: Range = COLD) -> dict[float, str]:
+def ramp(levels: Iterable[float], colours: ColourRange = COLD) -> dict[float, str]:
     """A colour per level, dark to light in order of the levels."""
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
