@@ -83,9 +83,9 @@ class LinearisedChannel(ReadOnlyArrays):
         settings = np.where(
             np.isfinite(settings), settings, [0.5 * (one.lower + one.upper) for one in inputs]
         )
-        likeness = self.smooth.likeness(settings, np.array(self.components.lengths))
+        _, functions = self.smooth.faded(settings, np.array(self.components.lengths))
         own = own_columns(force, along(points, inputs)) * np.exp(0.5 * self.variances.own)
-        return likeness * (self.smooth.columns(settings) @ self.missed), own * float(np.any(self.model.own))
+        return functions @ self.missed, own * float(np.any(self.model.own))
 
     def left_out(self, rows: Sequence[np.ndarray] | None = None) -> list[LeftOutReadings]:
         """Prediction of each sweep from all others, or of each set of ``rows`` (positions in :attr:`rows`)."""

@@ -71,6 +71,11 @@ class SmoothFunctions(ReadOnlyArrays):
             slope[:, i] = (by_length - share @ by_length)[self.orders[:, i]]
         return size, slope
 
+    def faded(self, settings: np.ndarray, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Correlation (n,) with the model error at the nearest tested settings (n, d), and the functions (n, m) times it."""
+        likeness = self.likeness(settings, lengths)
+        return likeness, likeness[:, None] * self.columns(settings)
+
     def likeness(self, at: np.ndarray, lengths: np.ndarray) -> np.ndarray:
         """Correlation (n,) of the model error at conditions (n, d) with that at the nearest tested ones; 1 inside the range."""
         lower, upper = ([getattr(one, end) for one in self.inputs] for end in ("lower", "upper"))

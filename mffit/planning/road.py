@@ -36,7 +36,7 @@ class _ChannelOnRoad(ReadOnlyArrays):
 
     def told(self, run: Points, force: np.ndarray, slopes: np.ndarray, own_zeros: np.ndarray) -> np.ndarray:
         """Information (r, r) of a run on the errors; ``own_zeros`` (n, j) are changes by zeros that no other run has."""
-        functions, likeness = _functions(self.linear, run)
+        likeness, functions = _functions(self.linear, run)
         seen = np.hstack([functions, slopes]) @ self.root
         _, own = self.linear.foreseen(run, force)
         missed = np.sqrt(1.0 - likeness**2) * self.linear.components.missed
@@ -80,7 +80,7 @@ class RoadBand:
         free = whole.shape[1] - len(spread)
         of_tyre = np.array([error_of(own) is None for own in self._names])
         tyre = self._simulation.faultless
-        functions, likeness = _functions(linear, road)
+        likeness, functions = _functions(linear, road)
         slopes = np.nan_to_num(tyre.sensitivities(road, self._names, [name])[1][name]) * of_tyre
         forces = np.hstack([functions, slopes]) @ whole
         return _ChannelOnRoad(
@@ -120,10 +120,9 @@ class RoadBand:
 
 
 def _functions(linear: LinearisedChannel, points: Points) -> tuple[np.ndarray, np.ndarray]:
-    """The functions (n, m) of the model error at conditions, and their correlation (n,) with the nearest tested ones."""
+    """As :meth:`SmoothFunctions.faded` at conditions; those that are not stated are in the middle of the tested range."""
     inputs = linear.smooth.inputs
     unstated = np.full(len(points), np.nan)
     settings = np.column_stack([unstated, *(getattr(points, one.name, unstated) for one in inputs)])[:, 1:]
     settings = np.where(np.isfinite(settings), settings, [0.5 * (one.lower + one.upper) for one in inputs])
-    likeness = linear.smooth.likeness(settings, np.array(linear.components.lengths))
-    return likeness[:, None] * linear.smooth.columns(settings), likeness
+    return linear.smooth.faded(settings, np.array(linear.components.lengths))

@@ -89,8 +89,7 @@ class MissedChannel(ReadOnlyArrays):
 
     def _functions(self, settings: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Correlation (n,) with the model error at the nearest tested conditions, and the functions (n, m) times it."""
-        likeness = self.smooth.likeness(settings, np.array(self.components.lengths))
-        return likeness, likeness[:, None] * self.smooth.columns(settings)
+        return self.smooth.faded(settings, np.array(self.components.lengths))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
