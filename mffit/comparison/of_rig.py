@@ -27,9 +27,8 @@ class ExplainedByRig:
     Each error counts with what is declared of it, all together, to first order; coefficients of the tyre stay as in the file.
     """
 
-    errors: Mapping[
-        str, Quantity
-    ]  #: those that differ from what is declared, in units of their key, the clearest first
+    errors: Mapping[str, Quantity]
+    """Those that differ from what is declared, in units of their key, the clearest first."""
     left: Mapping[str, float]  #: rms of every channel that remains with them
     share: float  #: of what exceeds the noise, the part (of chi-square) that they leave
     is_noise: bool  #: whether chance alone makes such a gap

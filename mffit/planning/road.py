@@ -27,9 +27,8 @@ class _ChannelOnRoad(ReadOnlyArrays):
 
     linear: LinearisedChannel
     root: np.ndarray  #: (m + k, r) of the functions' weights and the numbers that the readings inform
-    held: Mapping[
-        str, np.ndarray
-    ]  #: by number that keeps its uncertainty, the force (n,) by one standard deviation of it
+    held: Mapping[str, np.ndarray]
+    """By number that keeps its uncertainty, the force (n,) by one standard deviation of it."""
     road: np.ndarray  #: (n, r)
     unlike: np.ndarray  #: (n,) variance of the model error that nothing tested tells
     largest: float  #: force of the upright wheel [unit of the channel]

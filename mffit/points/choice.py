@@ -28,9 +28,8 @@ def chosen(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[Stretc
 
     ``scale`` is the usual size of the settings in the whole campaign; if None, that of this series.
     """
-    sweep = bridged(
-        sweep, (*SteadySettings._fields[1:], "Fy", "Mz")
-    )  # to divide it; means take no such sample
+    # Only to divide the recording: means take no sample that is bridged.
+    sweep = bridged(sweep, (*SteadySettings._fields[1:], "Fy", "Mz"))
     return _judged(sweep, _stretches(sweep, wrong, scale))
 
 

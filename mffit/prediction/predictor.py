@@ -30,9 +30,8 @@ from tir.frozen import ReadOnlyArrays
 class Remaining(NamedTuple):
     """Shares (n,) of the model error at conditions where nothing was tested."""
 
-    load: (
-        np.ndarray
-    )  #: of the error at the lowest tested load; it falls with the load, and its uncertainty with it
+    load: np.ndarray
+    """Of the error at the lowest tested load; it falls with the load, and its uncertainty with it."""
     slip: np.ndarray  #: correlation with the error of the tested longitudinal slip
 
 

@@ -45,9 +45,8 @@ class RoadSide:
 
     Fy: Quantity | None  #: at the sideslip of the record
     Mz: Quantity | None  #: at this sideslip, too
-    mu_y: (
-        Quantity | None
-    )  #: largest side force over the load; :class:`AtLeast` what was reached if it is no peak
+    mu_y: Quantity | None
+    """Largest side force over the load; :class:`AtLeast` what was reached if it is no peak."""
     M_zmax: Quantity | None  #: largest size of the aligning moment
 
 
@@ -76,9 +75,8 @@ class OnRoad:
     sides: Mapping[str, RoadSide]  #: "negative" and "positive" sideslip
     upright: RoadCurve
     leaned: RoadCurve | None  #: at a usual camber of those tested; None if no camber was tested
-    better: tuple[
-        str, ...
-    ] = ()  #: what would narrow the bands, most useful first; the right parts of sentences
+    better: tuple[str, ...] = ()
+    """What would narrow the bands, most useful first; the right parts of sentences."""
 
     @property
     def curves(self) -> dict[str, RoadCurve]:

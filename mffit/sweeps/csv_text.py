@@ -132,9 +132,8 @@ def _dialect(text: str) -> Dialect:
     lines = [line for line in text.split("\n") if line.strip()][:200]
     separator = _separator(lines)
     cells = [cell.strip() for line in lines[1:] for cell in _split(line, separator)]
-    with_comma = [
-        cell for cell in cells if has_decimal_comma(cell)
-    ]  # in quotation marks where it separates cells
+    # Where a comma separates cells, those with a decimal comma are in quotation marks.
+    with_comma = [cell for cell in cells if has_decimal_comma(cell)]
     if separator == "," and all(map(THOUSANDS_WITH_COMMA.fullmatch, with_comma)):
         with_comma = []
     with_point = [cell for cell in cells if NUMBER_WITH_POINT.fullmatch(cell)]
