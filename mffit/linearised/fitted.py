@@ -78,14 +78,15 @@ class LinearisedChannel(ReadOnlyArrays):
 
     def foreseen(self, points: Points, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Model error (n,) and ``own_effects`` (n, q) of a further run at its set-points; ``force`` (n,) is that of the model."""
+        own = own_columns(force, along(points, self.smooth.inputs)) * np.exp(0.5 * self.variances.own)
+        return self.functions_at(points)[1] @ self.missed, own * float(np.any(self.model.own))
+
+    def functions_at(self, points: Points) -> tuple[np.ndarray, np.ndarray]:
+        """As :meth:`SmoothFunctions.faded` at further points; unstated conditions are in the middle of the tested range."""
         inputs = self.smooth.inputs
-        settings = settings_of(points, inputs)
-        settings = np.where(
-            np.isfinite(settings), settings, [0.5 * (one.lower + one.upper) for one in inputs]
-        )
-        _, functions = self.smooth.faded(settings, np.array(self.components.lengths))
-        own = own_columns(force, along(points, inputs)) * np.exp(0.5 * self.variances.own)
-        return functions @ self.missed, own * float(np.any(self.model.own))
+        settings, middle = settings_of(points, inputs), [0.5 * (one.lower + one.upper) for one in inputs]
+        settings = np.where(np.isfinite(settings), settings, middle)
+        return self.smooth.faded(settings, np.array(self.components.lengths))
 
     def left_out(self, rows: Sequence[np.ndarray] | None = None) -> list[LeftOutReadings]:
         """Prediction of each sweep from all others, or of each set of ``rows`` (positions in :attr:`rows`)."""

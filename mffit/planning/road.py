@@ -35,7 +35,7 @@ class _ChannelOnRoad(ReadOnlyArrays):
 
     def told(self, run: Points, force: np.ndarray, slopes: np.ndarray, own_zeros: np.ndarray) -> np.ndarray:
         """Information (r, r) of a run on the errors; ``own_zeros`` (n, j) are changes by zeros that no other run has."""
-        likeness, functions = _functions(self.linear, run)
+        likeness, functions = self.linear.functions_at(run)
         seen = np.hstack([functions, slopes]) @ self.root
         _, own = self.linear.foreseen(run, force)
         missed = np.sqrt(1.0 - likeness**2) * self.linear.components.missed
@@ -79,7 +79,7 @@ class RoadBand:
         free = whole.shape[1] - len(spread)
         of_tyre = np.array([error_of(own) is None for own in self._names])
         tyre = self._simulation.faultless
-        likeness, functions = _functions(linear, road)
+        likeness, functions = linear.functions_at(road)
         slopes = np.nan_to_num(tyre.sensitivities(road, self._names, [name])[1][name]) * of_tyre
         forces = np.hstack([functions, slopes]) @ whole
         return _ChannelOnRoad(
@@ -116,12 +116,3 @@ class RoadBand:
             told[name] = one.told(run.points, forces[name], slopes * moving, zeros * spread)
         self._told[run.name] = told
         return told
-
-
-def _functions(linear: LinearisedChannel, points: Points) -> tuple[np.ndarray, np.ndarray]:
-    """As :meth:`SmoothFunctions.faded` at conditions; those that are not stated are in the middle of the tested range."""
-    inputs = linear.smooth.inputs
-    unstated = np.full(len(points), np.nan)
-    settings = np.column_stack([unstated, *(getattr(points, one.name, unstated) for one in inputs)])[:, 1:]
-    settings = np.where(np.isfinite(settings), settings, [0.5 * (one.lower + one.upper) for one in inputs])
-    return linear.smooth.faded(settings, np.array(linear.components.lengths))
