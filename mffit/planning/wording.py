@@ -88,6 +88,7 @@ class StageStatus(NamedTuple):
 
     title: str
     by_data: tuple[str, ...]
+    jointly: tuple[str, ...]  #: only in combination with another coefficient
     by_prior: tuple[str, ...]  #: as much by prior knowledge as by the data
     by_hand: tuple[str, ...]
     invisible: tuple[str, ...]  #: not moved by the data
@@ -96,6 +97,7 @@ class StageStatus(NamedTuple):
 
 STATUSES = {
     "by_data": "determined by the data",
+    "jointly": "determined only in combination",
     "by_prior": "determined mostly by prior knowledge",
     "by_hand": "held by hand",
     "invisible": "not visible",
@@ -110,17 +112,17 @@ def statuses(found: Identified) -> dict[str, str]:
 
 def stages(found: Identified) -> list[StageStatus]:
     """The stages that have coefficients."""
+    in_pairs = {name for *pair, _ in found.correlated for name in pair}
     rows = []
     for row in found.cover:
         invisible = tuple(name for name in row.held if name not in row.by_hand)
-        missing = "; ".join(reason for reason in row.missing if reason != HELD_BY_HAND)
-        by_data = tuple(name for name in row.free if name not in found.from_prior)
+        missing = "; ".join(reason for reason in row.missing if reason != HELD_BY_HAND) if invisible else ""
         by_prior = tuple(name for name in row.free if name in found.from_prior)
-        if by_data or by_prior or row.by_hand or invisible:
+        jointly = tuple(name for name in row.free if name in in_pairs - {*by_prior})
+        by_data = tuple(name for name in row.free if name not in {*by_prior, *jointly})
+        if row.free or row.by_hand or invisible:
             rows.append(
-                StageStatus(
-                    row.title, by_data, by_prior, tuple(row.by_hand), invisible, missing if invisible else ""
-                )
+                StageStatus(row.title, by_data, jointly, by_prior, tuple(row.by_hand), invisible, missing)
             )
     return rows
 

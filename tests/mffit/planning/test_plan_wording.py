@@ -16,7 +16,12 @@ from mffit.planning import BY_ID, Identified, Plan, PlannedRun, PlanStep, read_g
 IDENTIFIED = Identified(
     cover=(
         StageCoverage(
-            "camber", "Camber", True, free=("PKY6", "PKY7"), held=("PEY4",), missing=("camber and slip",)
+            "camber",
+            "Camber",
+            True,
+            free=("PKY3", "PKY6", "PKY7"),
+            held=("PEY4",),
+            missing=("camber and slip",),
         ),
         StageCoverage("pressure", "Pressure", False, free=(), held=(), missing=()),
     ),
@@ -47,7 +52,8 @@ def test_what_the_sweeps_identify():
     assert wording.identified_by_now(plan()) == [
         "PKY6 and PVY3 are strongly correlated (-0.99): only their combination is determined.",
         "The largest contribution to the uncertainty of eps_gamma (direct method) is camber alignment: 0.051.",
-        "Camber: determined by the data: PKY6; determined mostly by prior knowledge: PKY7; not visible: PEY4 (camber and slip).",
+        "Camber: determined by the data: PKY3; determined only in combination: PKY6; determined mostly by prior knowledge: PKY7; "
+        "not visible: PEY4 (camber and slip).",
     ]
     nothing = Identified(cover=(), from_prior=(), correlated=(), budget=())
     assert wording.identified_by_now(plan(identified=nothing)) == []
@@ -55,8 +61,8 @@ def test_what_the_sweeps_identify():
 
 def test_every_coefficient_of_a_stage_has_one_status():
     (camber,) = wording.stages(IDENTIFIED)
-    assert camber == ("Camber", ("PKY6",), ("PKY7",), (), ("PEY4",), "camber and slip")
-    assert camber._fields[1:5] == tuple(wording.STATUSES)
+    assert camber == ("Camber", ("PKY3",), ("PKY6",), ("PKY7",), (), ("PEY4",), "camber and slip")
+    assert camber._fields[1:-1] == tuple(wording.STATUSES)
 
 
 def test_titles_name_load_camber_and_pressure():
