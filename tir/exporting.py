@@ -15,7 +15,7 @@ from tir.errors import TirError
 from tir.mode import warn_of_doubt, words
 from tir.parameters import TABLE
 from tir.record import TyreRecord
-from tir.temperature import REFERENCE, factors_at, terms_of
+from tir.temperature import REFERENCE, factors_at, held, terms_of
 
 TEMPERATURE = "T_degC"
 STATES = ("K_ya", "K_xk", "sigma_x", "sigma_y", "Re", "omega", "trail")
@@ -59,14 +59,15 @@ class ExportedTyre(NamedTuple):
         return trace(self.switches, outputs, self.parameters if tuned else self._numbers)
 
     def parameters(self, graph: Graph) -> dict[str, Any]:
-        """The parameters on a graph; the temperature multiplies the scaling factors of its terms."""
+        """The parameters on a graph; the temperature, held to the tested range, multiplies the scaling factors of its terms."""
         free = {one.name for one in self.turned}
         p = {
             name: graph.symbol(name, PARAMETER) if name in free else x
             for name, x in self._numbers(graph).items()
         }
         if TEMPERATURE in free:
-            warmer = graph.symbol(TEMPERATURE, PARAMETER) - self.tyre.measured[REFERENCE].value
+            T_degC = held(self.tyre, graph.symbol(TEMPERATURE, PARAMETER))
+            warmer = T_degC - self.tyre.measured[REFERENCE].value
             for name, factor in factors_at(terms_of(self.tyre), warmer).items():
                 p[name] = p[name] * factor
         return p
@@ -138,5 +139,6 @@ def tunables(tyre: TyreRecord) -> tuple[Tunable, ...]:
     found = [Tunable(name, f"{text} [-]", float(tyre[name])) for name, text in FACTORS.items()]
     if terms_of(tyre):
         start = float(tyre.measured[REFERENCE].value)
-        found.append(Tunable(TEMPERATURE, "temperature of the tread, by the terms of the file [degC]", start))
+        said = "temperature of the tread, by the terms of the file, held to the range that it states [degC]"
+        found.append(Tunable(TEMPERATURE, said, start))
     return tuple(found)

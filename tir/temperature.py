@@ -8,6 +8,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, TypeVar
 
+from tir.equations.elementary import select
 from tir.errors import Problem, TirError
 from tir.record import Quantity, TyreRecord
 
@@ -59,7 +60,7 @@ def at_temperature(tyre: Kind, T_degC: float) -> Kind:
             path=None if tyre.document is None else tyre.document.path,
         )
     beyond = _beyond(tyre, float(T_degC))
-    T_degC = held(tyre, float(T_degC))
+    T_degC = float(held(tyre, float(T_degC)))
     warmer = T_degC - tyre.measured[REFERENCE].value
     factors, stated = factors_at(terms, warmer), {}
     for name in SCALED_BY.keys() - CURVED_BY.values():
@@ -90,10 +91,12 @@ def at_temperature(tyre: Kind, T_degC: float) -> Kind:
     return replace(moved, on_reading=(*tyre.on_reading, beyond)) if beyond else moved
 
 
-def held(tyre: TyreRecord, T_degC: float) -> float:
+def held(tyre: TyreRecord, T_degC: Any) -> Any:
     """The temperature [degC], held to the range in which the terms were measured; a file that states none has no limits."""
     low, high = _tested(tyre)
-    return min(max(T_degC, low), high)
+    if low > -math.inf:
+        T_degC = select(T_degC < low, low, T_degC)
+    return select(T_degC > high, high, T_degC) if high < math.inf else T_degC
 
 
 def _tested(tyre: TyreRecord) -> tuple[float, float]:

@@ -112,15 +112,21 @@ def test_a_simulation_gives_the_forces_of_tir(fmus, fmi, kind):
 @needs_compiler
 @pytest.mark.parametrize("fmi", [2, 3])
 def test_scaling_factors_and_temperature_can_be_turned(tmp_path, fmi):
-    """Against a tyre with these factors, taken to this temperature; p starts as the pressure of the file."""
+    """Against a tyre with these factors, taken to this temperature or the nearest tested one; p starts as that of the file."""
     fmpy = pytest.importorskip("fmpy")
     terms = {"rig.k_T_grip_per_K": (-0.005, 1e-4, "1/K"), "rig.T_ref_degC": (60.0, 0.0, "degC")}
+    terms |= {"T_min_degC": (45.0, 0.0, "degC"), "T_max_degC": (80.0, 0.0, "degC")}
     tyre = tir.read(FILE).annotate(measured={name: tir.Quantity(*x) for name, x in terms.items()})
     tyre.replace(LMUY=0.9).write(tmp_path / "front.tir")
     fmu = write_fmu(tmp_path / "front.tir", tmp_path, fmi=fmi)
     turned = {"LMUY": 0.7, "LKY": 1.2, "LKYC": 0.8, "LTR": 1.1, "LMUX": 0.95, "LKX": 1.3}
     at = {"Fz": 1400.0, "alpha": 0.06, "gamma": 0.3, "kappa": 0.03, "p": 2.2e5}
-    for factors, T in (({}, 60.0), ({**turned, "T_degC": 75.0}, 75.0)):
+    for factors, T in (
+        ({}, 60.0),
+        ({**turned, "T_degC": 75.0}, 75.0),
+        ({"T_degC": -20.0}, 45.0),
+        ({"T_degC": 95.0}, 80.0),
+    ):
         found = fmpy.simulate_fmu(
             str(fmu), start_values={**at, **factors}, stop_time=0.01, output=["Fx", "Fy", "Mz", "K_ya"]
         )
@@ -281,6 +287,7 @@ def test_every_unit_is_the_product_of_si_units_that_its_name_says(tmp_path, fmi,
     registry = pint.UnitRegistry()
     symbols = {"kilogram": "kg", "meter": "m", "second": "s", "radian": "rad", "kelvin": "K"}
     terms = {"rig.k_T_grip_per_K": (-0.005, 1e-4, "1/K"), "rig.T_ref_degC": (60.0, 0.0, "degC")}
+    terms |= {"T_min_degC": (45.0, 0.0, "degC"), "T_max_degC": (80.0, 0.0, "degC")}
     warm = tmp_path / "warm.tir"
     measured = {name: tir.Quantity(*value) for name, value in terms.items()}
     tir.read(FILE).annotate(measured=measured).write(warm)
