@@ -23,6 +23,8 @@ LEFT, RIGHT, BOTTOM, TOP = 50.0, 10.0, 31.0, 18.0
 """Margins of a panel with numbers at its axes [pt]."""
 LETTER = 5.0
 """Width of a letter of a title or key [pt], wide ones among them."""
+LINE, TITLE_LINES = 10.5, 3
+"""Height of a line of a title or of a name at an axis [pt], and most lines of a title."""
 SETTINGS: dict[str, Any] = {
     "figure.dpi": 144,
     "font.family": "DejaVu Sans",  # comes with matplotlib, so that pictures are the same on every machine

@@ -72,7 +72,7 @@ def figure_of(sheet: Sheet) -> Figure:
     """The sheet as a figure: a key, and below it panels of one size in rows, each with its axes."""
     entries = _columns_of_key(sheet)
     above = _above(sheet)
-    width, height = _size_of_panel(sheet)
+    width, height, top = _size_of_panel(sheet)
     whole = above + height * len(sheet.rows)
     figure = Figure(figsize=(style.WIDTH / INCH, whole / INCH))
 
@@ -86,15 +86,13 @@ def figure_of(sheet: Sheet) -> Figure:
     if sheet.scale:
         left, bottom, *size = SCALE
         _draw_scale(added(left, whole - above + bottom, *size), sheet.scale)
-    longest = int((width - style.RIGHT) / style.LETTER)
     for row, panels in enumerate(sheet.rows):
         for column, panel in enumerate(panels):
             lines = "\n".join(_words_of(panel.y, width)).split("\n")
             left = max(style.LEFT, style.LETTER * max(map(len, lines)) + NUMBER_OFF + 3.0)
-            wide, high = width - left - style.RIGHT, height - style.BOTTOM - style.TOP
+            wide, high = width - left - style.RIGHT, height - style.BOTTOM - top
             axes = added(width * column + left, whole - above - height * (row + 1) + style.BOTTOM, wide, high)
-            title = textwrap.shorten(panel.title, longest, placeholder="…")
-            axes.set_title(_text(title), x=(4.0 - left) / wide)
+            axes.set_title("\n".join(_title_of(panel, width)), x=(4.0 - left) / wide)
             _draw_panel(axes, panel, width, sheet.scale)
             _draw_axis(axes, "x", panel.x, [_text(word) for word in (panel.x.words or {}).values()])
             _draw_axis(axes, "y", panel.y, _words_of(panel.y, width))
@@ -119,9 +117,20 @@ def _above(sheet: Sheet) -> float:
     return KEY_LINE * lines + (2.5 * KEY_LINE if sheet.scale else 0.0) + 3.0
 
 
-def _size_of_panel(sheet: Sheet) -> tuple[float, float]:
-    """Width and height of a panel with its margins [pt]."""
-    return style.WIDTH / sheet.columns, INCH * sheet.height + style.BOTTOM + style.TOP
+def _size_of_panel(sheet: Sheet) -> tuple[float, float, float]:
+    """Width and height of a panel with its margins, and the margin above it [pt]: room for titles and names of several lines."""
+    width = style.WIDTH / sheet.columns
+    title = max((len(_title_of(panel, width)) for panel in sheet.panels), default=1)
+    top = style.TOP + (max(title, 1) - 1) * style.LINE
+    names = [_words_of(panel.y, width) for panel in sheet.panels]
+    lines = (len(words) * (word.count("\n") + 1) for words in names for word in words)
+    return width, max(INCH * sheet.height, max(lines, default=0) * style.LINE) + style.BOTTOM + top, top
+
+
+def _title_of(panel: Panel, width: float) -> list[str]:
+    """The lines of a title."""
+    longest, most = int((width - style.RIGHT) / style.LETTER), style.TITLE_LINES
+    return [_text(line) for line in textwrap.wrap(panel.title, longest, max_lines=most, placeholder="…")]
 
 
 def _columns_of_key(sheet: Sheet) -> int:
@@ -273,7 +282,7 @@ def _png(image: Image.Image) -> bytes:
 
 def _markup(whole: Image.Image, sheet: Sheet) -> str:
     """The key and rows of panels, each an image of its own with the colours of the whole."""
-    width, height = _size_of_panel(sheet)
+    width, height, _ = _size_of_panel(sheet)
     above, point = _above(sheet), style.SETTINGS["figure.dpi"] / INCH
 
     def image(left: float, top: float, wide: float, high: float) -> str:

@@ -322,6 +322,28 @@ def test_folds_show_when_opened_and_on_paper_what_is_decided_by(browser):
     look(browser)
 
 
+def test_no_table_is_broken_on_paper(browser):
+    """A table that breaks has its head on the next sheet once more, wherever on a sheet it begins."""
+    look(browser, PAPER, media="print")
+    shown = "[...document.querySelectorAll('thead')].filter(one => one.checkVisibility())"
+    heads = [_letters(text) for text in browser.execute_script(f"return {shown}.map(one => one.textContent)")]
+    assert len(heads) > 5
+    for lower_by in (0, 60, 120):
+        room = f"document.querySelector('main').style.paddingTop = '{lower_by}mm'"
+        browser.execute_script(room)
+        text = _letters(words_of(printed(browser)))
+        assert {head: text.count(head) for head in heads} == {
+            head: "".join(heads).count(head) for head in heads
+        }
+    browser.execute_script("document.querySelector('main').style.paddingTop = ''")
+    look(browser)
+
+
+def _letters(text: str) -> str:
+    """Without spaces, and letters that a font joins apart."""
+    return unicodedata.normalize("NFKD", re.sub(r"\s", "", text))
+
+
 def test_everything_is_printed_if_asked_for(browser, result):
     """Coefficients with origin and uncertainty, budgets, sweeps, digests of the inputs, and a place to sign."""
     few = words_of(printed(browser))
@@ -342,8 +364,7 @@ def test_everything_is_printed_if_asked_for(browser, result):
     assert fitted[0] + value.replace(" ", "") in every
     sources = [re.sub("<[^>]*>| ", "", typeset.sentence(line.source)) for line in result.measured.budget]
     assert sources
-    whole = unicodedata.normalize("NFKD", every)  # letters that the font joins
-    assert [source for source in sources if unicodedata.normalize("NFKD", source) not in whole] == []
+    assert [source for source in sources if _letters(source) not in _letters(every)] == []
     assert all(name in every for name in result.points.sweep_names)
 
 

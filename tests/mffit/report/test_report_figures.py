@@ -17,7 +17,7 @@ from mffit.quantities import CHANNELS
 from mffit.report import build, labels, style
 from mffit.report.build_view import view_of
 from mffit.report.drawing import pictures
-from mffit.report.drawing.records import Axis, Bars, Guide, Look, Panel, Sheet, Trace, with_fewer_rows
+from mffit.report.drawing.records import Axis, Bars, Guide, Look, Panel, Sheet, Trace, listed, with_fewer_rows
 from mffit.report.figures import decomposition, fit, residuals, spin
 from mffit.report.figures.spin import TYRES
 
@@ -218,9 +218,20 @@ def test_a_series_is_drawn_at_its_numbers():
     assert np.ptp(columns) + 1 == pytest.approx(12.0 * style.SETTINGS["figure.dpi"] / 72.0, abs=2.0)
 
 
-def test_a_long_title_is_cut():
+def test_a_long_title_has_lines_and_a_longer_one_is_cut():
+    title = "the peak of the side force over the load of the side where it is lesser, at nominal load and pressure"
+    (axes,) = axes_of(panel_of([0, 1], [0, 1], title=title))
+    assert axes.get_title().replace("\n", " ") == title
     (axes,) = axes_of(panel_of([0, 1], [0, 1], title="a very long title " * 30))
     assert axes.get_title().endswith("…")
+
+
+def test_names_of_several_lines_do_not_overlap():
+    names = [f"a number with a name that is far too long for one line of the picture {k}" for k in range(5)]
+    with pictures._settings():
+        (axes,) = axes_of(panel_of([1, 2], [0, 4], title=" and ".join(names[:2]), y=listed(names)))
+        assert len(boxes(axes)) > len(names)
+        assert crossing(boxes(axes)) == []
 
 
 @pytest.mark.parametrize("title", ["100 $ per $\\frac", "$x$", "轮胎", "<b> & more"])
