@@ -89,7 +89,10 @@ def _numbers(
     for k, side in enumerate((first, second)):
         at: Any = {"turn_slip": side.turn_slip, "tested": tested}
         predictor = None if side.foretold is None else side.foretold[0]
-        found.append(characteristics(side.tyre, load, known=side.known, predictor=predictor, **at))
+        own = characteristics(side.tyre, load, known=side.known, predictor=predictor, **at)
+        if side.build is not None and side.known is not None:
+            own = {key: side.build.at_least_stated(key, q) for key, q in own.items()}
+        found.append(own)
         moved.append(_moved(side, load, at, [pair[k] for pair in shared.values()]))
     a, b = found
     for key in a:

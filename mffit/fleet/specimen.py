@@ -17,7 +17,7 @@ from mffit.errors import InputError
 from mffit.fit.priors import scatter
 from mffit.numbers import Numbers, from_json
 from mffit.prediction.road import lesser
-from mffit.quantities import DIRECT, OF_ROAD
+from mffit.quantities import DIRECT, KEYS, OF_ROAD
 from mffit.rig_errors import BESIDE, DECLARED, OF_RUN, error_of, number_of
 from mffit.rounding import AtLeast
 from tir import Quantity, Tyre
@@ -49,8 +49,25 @@ class Specimen:
     setups: tuple[str, ...] = ()  #: names of the set-ups that its sweeps declare
     on_road: Mapping[str, Quantity] = field(default_factory=dict)
     """Peaks on the road, of the lesser side, by their keys in ``mffit.quantities.OF_ROAD``."""
+    without_spin: Quantity | None = None  #: cornering stiffness on a straight path, of a build on a disc
+    size: str = ""  #: as declared, without spaces; empty if it is not
     budget: Mapping[str, float] = field(default_factory=dict)
     """Change of the measured eps_gamma by one standard uncertainty of each source of its budget."""
+
+    @property
+    def conditions(self) -> tuple[float, float]:
+        """Nominal load [N] and pressure [Pa], to which the coefficients refer."""
+        return float(self.tyre["FNOMIN"]), float(self.tyre["NOMPRES"])
+
+    def at_least_stated(self, key: str, found: Quantity) -> Quantity:
+        """A characteristic of the fitted model, with no less than the relative uncertainty that the build states for it.
+
+        The coefficients of a disc do not know what the correction for the path's curvature adds to the cornering stiffness.
+        """
+        known = self.without_spin
+        if known is None or key != KEYS["C_alpha"]:
+            return found
+        return found._replace(u=max(found.u, known.u * abs(found.value / known.value)))
 
     @property
     def numbers_of_setups(self) -> Numbers | None:
@@ -163,6 +180,8 @@ def read(folder: str | Path) -> Specimen:
                 for row in spin.get("budget", ())
             },
             on_road=_on_road(result.get("road")),
+            without_spin=_stated(spin, KEYS["C_alpha_straight"], "N/rad") if on_disc else None,
+            size="".join(result["tyre"].get("size", "").split()).strip("-"),
             setups=tuple(dict.fromkeys(s["setup"] for s in resolved["sweep"] if "setup" in s)),
         )
     except (OSError, LookupError, TypeError, ValueError, AttributeError, StopIteration):
@@ -171,9 +190,9 @@ def read(folder: str | Path) -> Specimen:
         ) from None
 
 
-def _stated(spin: Mapping[str, Any], key: str) -> Quantity | None:
-    value = spin[key]
-    return None if value is None else Quantity(float(value), float(spin[f"u_{key}"]), "-")
+def _stated(spin: Mapping[str, Any], key: str, unit: str = "-") -> Quantity | None:
+    value = spin.get(key)
+    return None if value is None else Quantity(float(value), float(spin[f"u_{key}"]), unit)
 
 
 def _on_road(road: Mapping[str, Any] | None) -> dict[str, Quantity]:

@@ -118,7 +118,8 @@ def _plainly_named(found: Sequence[Numbers]) -> list[Numbers]:
 def _row(specimen: Specimen, rig: int, together: TyreEstimate | None) -> Row:
     """A build with its own estimate, and that ``together`` with the other tyres of its rig."""
     of_file = numbers(specimen.tyre, turn_slip=specimen.on_disc, known=specimen.numbers)
-    stated = {key: q for key, q in of_file.items() if key not in OF_ROAD} | dict(specimen.on_road)
+    stated = {key: specimen.at_least_stated(key, q) for key, q in of_file.items() if key not in OF_ROAD}
+    stated |= specimen.on_road
     own = _estimated([specimen])
     alone = None if own is None else own.tyres[0]
     return Row(

@@ -16,7 +16,7 @@ from small_rigs import SAMPLE, built, disc, simulated, truth
 
 import mffit
 import tir
-from mffit import as_json, fleet
+from mffit import as_json, fleet, pipeline
 from mffit.cli import main
 from mffit.comparison import ComparedSubject, Difference, between, wording
 from mffit.comparison.characteristics import characteristics
@@ -256,6 +256,24 @@ def folder(tmp_path_factory):
     place = tmp_path_factory.mktemp("project")
     write_build(built(content, place), place / "out", with_report=False)
     return place
+
+
+def test_the_cornering_stiffness_of_a_disc_has_the_uncertainty_that_its_build_states(folder, tmp_path):
+    """It counts what the coefficients do not know, at every load in proportion to the stiffness; in a fleet, too."""
+    out, doubtful = folder / "out", tmp_path / "doubtful"
+    shutil.copytree(out, doubtful)
+    result = json.loads((out / "result.json").read_text())
+    share = 0.1
+    result["spin"]["u_C_alpha_straight_N_per_rad"] = share * abs(result["spin"]["C_alpha_straight_N_per_rad"])
+    (doubtful / "result.json").write_text(json.dumps(result))
+    rows = [row for row in mffit.compare(out, doubtful).numbers if row.key == "C_alpha_N_per_rad"]
+    assert len(rows) > 1
+    for row in rows:
+        assert row.u_first < 0.02 * abs(row.first)
+        assert row.u_second == pytest.approx(share * abs(row.second))
+    sound, other = (row.numbers["C_alpha_N_per_rad"] for row in pipeline.fleet([out, doubtful]).rows)
+    assert sound.u < 0.02 * abs(sound.value)
+    assert other.u == pytest.approx(share * abs(other.value))
 
 
 def test_a_build_is_compared_with_its_uncertainties(folder, stiffer, tmp_path):
