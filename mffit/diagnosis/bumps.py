@@ -60,7 +60,7 @@ class BumpScan(ReadOnlyArrays):
             rows, own = np.flatnonzero(self.noise.used // n == k), self.noise.only(channel)
             for first in range(0, len(self.regions) if channel in self.spread else 0, block):
                 shapes = own.whiten(self.bumps[:, first : first + block].astype(float))
-                power = np.einsum("ij,ij->j", shapes, shapes) - self.noise.shared_power(rows, shapes)
+                power = np.einsum("ij,ij->j", shapes, shapes) - self.noise.directions.power(rows, shapes)
                 out.append((channel, first, rows, shapes.astype(np.float32), power))
         return out
 
@@ -69,8 +69,8 @@ class BumpScan(ReadOnlyArrays):
         residual = hypothesis.residual
         along = hypothesis.axes.T @ residual
         # The whitening by shared changes is symmetric, so it is applied to the smaller factor of each product only.
-        axes = self.noise.back(hypothesis.axes).astype(np.float32)
-        left = self.noise.back(residual).astype(np.float32)
+        axes = self.noise.directions.less(hypothesis.axes).astype(np.float32)
+        left = self.noise.directions.less(residual).astype(np.float32)
         tried = math.log(max(len(self.regions) * len(self.spread), 1))
         best = Bump("Fy", {}, 0.0, -math.inf)
         for channel, first, rows, shapes, whole in self._white:

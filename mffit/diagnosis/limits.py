@@ -12,6 +12,7 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis, outside
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.effects import Effect
+from mffit.linearised.gaussian import Informed
 from mffit.scatter import rms
 
 
@@ -41,9 +42,8 @@ def limits(
         sizes = []
         for columns in groups:
             white = outside(axes, problem.noise.whiten(columns[:, np.any(columns != 0.0, axis=0)]))
-            covariance = np.linalg.inv(white.T @ white + np.eye(white.shape[1]))
-            found = np.abs(covariance @ (white.T @ chosen.residual))
-            sizes.append(rms(found + constants.TWO_SIGMA * np.sqrt(np.diag(covariance))))
+            found = Informed.of_rows(white, chosen.residual)
+            sizes.append(rms(np.abs(found.mean) + constants.TWO_SIGMA * found.u))
         # An effect that is even in its number is tested from several starts; the most sensitive one counts.
         out.append(Limit(effect, min(sizes)))
     return tuple(sorted(out, key=lambda row: row.share))

@@ -65,9 +65,8 @@ class RunOffsets(NamedTuple):
 
 
 class SharedDirections(NamedTuple):
-    """Orthonormal directions along which some whitened readings change together."""
+    """Orthonormal directions along which whitened readings change together."""
 
-    rows: slice  #: rows of the readings
     axes: np.ndarray  #: (m, k) the directions
     variance: np.ndarray  #: (k,) variances of the changes; a whitened reading has variance 1
 
@@ -79,9 +78,9 @@ class SharedDirections(NamedTuple):
         """The inverse of :meth:`less`."""
         return self._along(z, np.sqrt(1.0 + self.variance) - 1.0)
 
-    def power(self, along: np.ndarray) -> np.ndarray:
-        """Decrease of the sums of squares (j,) by :meth:`less`, from the projections (k, j) on the directions."""
-        return (self.variance / (1.0 + self.variance)) @ along**2
+    def power(self, rows: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Decrease of the sums of squares (j,) by :meth:`less` of differences that are 0 but for the ``rows``, ``z`` (i, j)."""
+        return (self.variance / (1.0 + self.variance)) @ (self.axes[rows].T @ z) ** 2
 
     def _along(self, z: np.ndarray, gain: np.ndarray) -> np.ndarray:
         return z + self.axes @ (gain * (self.axes.T @ z).T).T if len(gain) else z
@@ -93,8 +92,7 @@ class Noise(ReadOnlyArrays):
 
     The readings (c n,) are those of n points in c channels, channel by channel. Their covariance is D M D + S S'. D are the
     standard uncertainties. M is the correlation along chains: ``memory`` to the power of the distance, times 1 less the
-    ``independent`` share. The columns S are changes that several readings share, one standard deviation each. Smooth
-    ``structure`` of single channels is added along directions of the readings that D and M have whitened.
+    ``independent`` share. The columns S are changes that several readings share, one standard deviation each.
     """
 
     u: np.ndarray  #: (c n,) standard uncertainty of every reading; inf where missing
@@ -109,7 +107,6 @@ class Noise(ReadOnlyArrays):
     """(c n,) rank in time of every reading within its channel; None without longer chains."""
     weight: np.ndarray | None = None  #: (c n,) weight of each reading, below 1 for outliers; None: all 1
     shared: np.ndarray | None = None  #: (c n, k) changes that readings share, one standard deviation each
-    structure: tuple[SharedDirections, ...] = ()
     offsets: Mapping[str, RunOffsets] = field(default_factory=dict)
     """By id of the effect, offsets of runs that compete with autocorrelated errors; empty without autocorrelation."""
 
@@ -170,15 +167,15 @@ class Noise(ReadOnlyArrays):
         return out
 
     @cached_property
-    def _directions(self) -> SharedDirections:
-        """Directions of the shared changes, after whitening for the structure."""
+    def directions(self) -> SharedDirections:
+        """Directions of the shared changes among the used readings that D and M have whitened."""
         if self.shared is None or not self.shared.shape[1]:
-            return SharedDirections(slice(None), np.empty((len(self.used), 0)), np.empty(0))
-        white = self._less_structure(self._independent(self.shared[self.used]))
+            return SharedDirections(np.empty((len(self.used), 0)), np.empty(0))
+        white = self._independent(self.shared[self.used])
         variance, turn = np.linalg.eigh(white.T @ white)
         some = variance > 1e-9 * max(float(variance[-1]), 1e-9)
         axes = white @ (turn[:, some] / np.sqrt(variance[some]))
-        return SharedDirections(slice(None), axes, variance[some])
+        return SharedDirections(axes, variance[some])
 
     def _independent(self, x: np.ndarray) -> np.ndarray:
         """Differences of used readings (m,) or (m, k), whitened for D and M only."""
@@ -190,41 +187,7 @@ class Noise(ReadOnlyArrays):
 
     def whiten(self, x: np.ndarray) -> np.ndarray:
         """Whitened differences (m,) or (m, k) of the used readings, from readings (c n,) or (c n, k)."""
-        return self._directions.less(self._less_structure(self._independent(x[self.used])))
-
-    def _less_structure(self, z: np.ndarray) -> np.ndarray:
-        """Whitened differences (m,) or (m, k), whitened for smooth structure too."""
-        out = z.copy() if self.structure else z
-        for one in self.structure:
-            out[one.rows] = one.less(z[one.rows])
-        return out
-
-    def unshared(self, x: np.ndarray) -> np.ndarray:
-        """Inverse of the whitening for structure and shared changes, applied to differences (m,) or (m, k)."""
-        out = self._directions.more(x)
-        for one in self.structure:
-            out[one.rows] = one.more(out[one.rows])
-        return out
-
-    def back(self, x: np.ndarray) -> np.ndarray:
-        """Transpose of the whitening for structure and shared changes, applied to differences (m,) or (m, k)."""
-        return self._less_structure(self._directions.less(x))
-
-    def shared_power(self, rows: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Decrease of the sums of squares (k,) of whitened differences by the whitening for shared changes and structure.
-
-        ``z`` has only the given ``rows`` of the differences, all in one channel; all other rows are 0.
-        """
-        fall = self._directions.power(self._directions_back[rows].T @ z)
-        for one in self.structure:
-            if one.rows.start <= rows[0] < one.rows.stop:
-                fall = fall + one.power(one.axes.T @ z)
-        return fall
-
-    @cached_property
-    def _directions_back(self) -> np.ndarray:
-        """Directions of shared changes, multiplied by the transposed whitening for structure."""
-        return self._less_structure(self._directions.axes)
+        return self.directions.less(self._independent(x[self.used]))
 
     def only(self, channel: str) -> Noise:
         """The scatter of one channel."""
@@ -238,7 +201,6 @@ class Noise(ReadOnlyArrays):
             weight=None if self.weight is None else self.of_channel(self.weight, channel),
             scatter={channel: self.scatter[channel]},
             shared=None,
-            structure=(),
         )
 
     def error_of_sum(self, rows: np.ndarray) -> float:
@@ -282,13 +244,13 @@ class Noise(ReadOnlyArrays):
         return replace(self, u=self.u * np.concatenate(factors), scatter=scatter)
 
     def alone(self) -> Noise:
-        """The scatter of the readings without shared changes and structure."""
-        return replace(self, shared=None, structure=())
+        """The scatter of the readings without shared changes."""
+        return replace(self, shared=None)
 
-    def sharing(self, *columns: np.ndarray) -> Noise:
-        """The noise with these shared changes (c n, k) only, and without structure."""
-        given = [c for c in columns if c.size]
-        return replace(self, shared=np.column_stack(given) if given else None, structure=())
+    def sharing(self, *columns: np.ndarray | None) -> Noise:
+        """The noise with these shared changes (c n, k) only."""
+        given = [c for c in columns if c is not None and c.size]
+        return replace(self, shared=np.column_stack(given) if given else None)
 
 
 keys(

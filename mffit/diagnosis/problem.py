@@ -18,6 +18,7 @@ from mffit.diagnosis.smooth import Smooth, StructureBeside
 from mffit.effects import Effect, Free
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve, touches
 from mffit.left_out import moved_without
+from mffit.linearised.gaussian import Informed
 from mffit.points import Points
 from mffit.rig import Simulation
 from tir.parameters import BY_NAME as COEFFICIENTS
@@ -254,7 +255,7 @@ class DiagnosisProblem:
         occam = 0.0
         if numbers:
             scaled = found.jacobian * np.array([n.spread for n in numbers])
-            occam = 0.5 * float(np.linalg.slogdet(scaled.T @ scaled + np.eye(len(numbers)))[1])
+            occam = 0.5 * Informed.of_rows(scaled, found.data).log_determinant
         known = sum(beyond_declaration(n, values[n.name], self.declared) for n in numbers)
         hypothesis = Hypothesis(
             effects=tuple(effects),
@@ -292,7 +293,7 @@ class DiagnosisProblem:
         away = np.array([(fitted.numbers[n.name] - n.expected) / n.spread for n in numbers])
         columns = not_too_steep(fitted.jacobian * np.array([n.spread for n in numbers]))
         at_centre = fitted.residual - columns @ away
-        found = self.noise.unshared(np.column_stack([at_centre, columns]))
+        found = self.noise.directions.more(np.column_stack([at_centre, columns]))
         return found[:, 1:], found[:, 0]
 
     def _standard_errors(self, found: Solution) -> dict[str, float]:

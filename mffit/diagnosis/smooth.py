@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import block_diag, cholesky, solve_triangular
+from scipy.linalg import block_diag
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.noise import Noise, SharedDirections
+from mffit.diagnosis.noise import Noise
+from mffit.linearised.gaussian import Informed
 from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
@@ -88,13 +89,22 @@ def _functions(conditions: Mapping[str, np.ndarray], divisions: float, n: int) -
     return found
 
 
+class ChannelDirections(NamedTuple):
+    """Orthonormal directions of the smooth changes of one channel among whitened readings."""
+
+    rows: slice  #: readings of the channel
+    axes: np.ndarray  #: (n, k)
+    variance: np.ndarray  #: (k,) variances of the changes at amplitude 1
+
+
 @dataclass(frozen=True, eq=False)
 class SmoothStructure(ReadOnlyArrays):
     """Smooth structure that may be added to any hypothesis; all rows (m,) are whitened readings."""
 
     channels: tuple[str, ...]  #: (c,)
+    basis: np.ndarray  #: (c n, k) changes of the readings at amplitude 1, equally many for every channel
     shared: np.ndarray  #: (m, p) changes that readings share, one standard deviation each
-    directions: tuple[SharedDirections, ...]  #: by channel, directions of the structure at amplitude 1
+    directions: tuple[ChannelDirections, ...]  #: by channel
 
     @classmethod
     def over(cls, basis: np.ndarray, noise: Noise) -> SmoothStructure:
@@ -108,33 +118,25 @@ class SmoothStructure(ReadOnlyArrays):
             rows = slice(int(begin), int(end))
             left, size, _ = np.linalg.svd(alone.whiten(columns)[rows], full_matrices=False)
             some = size > 1e-4 * max(float(size.max(initial=0.0)), 1e-9)
-            directions.append(SharedDirections(rows, left[:, some], size[some] ** 2))
+            directions.append(ChannelDirections(rows, left[:, some], size[some] ** 2))
         nothing = np.zeros((len(noise.used), 0))
         shared = nothing if noise.shared is None else alone.whiten(noise.shared)
-        return cls(noise.channels, shared, tuple(directions))
+        return cls(noise.channels, basis, shared, tuple(directions))
 
     @cached_property
     def _alone(self) -> BesideColumns:
-        nothing = BesideColumns(
-            self,
-            self.shared[:, :0],
-            np.zeros((0, 0)),
-            tuple(np.zeros((len(one.variance), 0)) for one in self.directions),
-        )
-        return nothing.with_columns(self.shared)
+        nothing = tuple(np.zeros((len(one.variance), 0)) for one in self.directions)
+        return BesideColumns(self, self.shared[:, :0], np.zeros((0, 0)), nothing).with_columns(self.shared)
 
     def beside(self, columns: np.ndarray, residual: np.ndarray) -> BesideColumns:
         """The structure together with columns (m, j) of unit prior variance that may explain a residual (m,)."""
         return self._alone.with_columns(np.column_stack([residual, columns]))
 
-    def at(self, amplitude: Mapping[str, float]) -> tuple[SharedDirections, ...]:
-        """The directions of the channels with an amplitude, scaled to it."""
-        found = zip(self.channels, self.directions, strict=True)
-        return tuple(
-            one._replace(variance=amplitude[name] ** 2 * one.variance)
-            for name, one in found
-            if amplitude.get(name)
-        )
+    def at(self, amplitude: Mapping[str, float]) -> np.ndarray:
+        """Changes of the readings (c n, k), one standard deviation each, by structure of the channels with an amplitude."""
+        parts = np.split(self.basis, len(self.channels), axis=1)
+        found = (amplitude.get(name, 0.0) * part for name, part in zip(self.channels, parts, strict=True))
+        return np.column_stack([part[:, np.any(part, axis=0)] for part in found])
 
 
 class BesideColumns(NamedTuple):
@@ -170,9 +172,8 @@ class BesideColumns(NamedTuple):
                 log += 0.5 * float(np.sum(np.log1p(size)))
         r = self.structure.shared.shape[1]  # index of the residual
         others = np.delete(np.arange(len(products)), r)
-        root = cholesky(np.eye(len(others)) + products[np.ix_(others, others)], lower=True)
-        found = solve_triangular(root, products[others, r], lower=True)
-        return -0.5 * float(products[r, r] - found @ found) - float(np.sum(np.log(np.diag(root)))) - log
+        found = Informed.by(products[np.ix_(others, others)], products[others, r])
+        return found.gain - 0.5 * float(products[r, r]) - log
 
     def improbable(self, amplitude: Mapping[str, float]) -> float:
         """Negative log prior of the amplitudes, relative to none."""
@@ -213,11 +214,10 @@ class StructureBeside:
     @cached_property
     def half_log_determinant(self) -> float:
         """Half the log determinant of the covariance, less that without structure."""
-        rows = len(self.structure.shared)
-        model = self.structure.beside(np.zeros((rows, 0)), np.zeros(rows))
-        return model.evidence({}) - model.evidence(self.amplitude) - model.improbable(self.amplitude)
+        after, before = (np.sum(np.log1p(one.directions.variance)) for one in (self.noise, self.scatter))
+        return 0.5 * float(after - before)
 
-    @property
+    @cached_property
     def noise(self) -> Noise:
         """The noise with structure of these amplitudes."""
-        return replace(self.scatter, structure=self.structure.at(self.amplitude))
+        return self.scatter.sharing(self.scatter.shared, self.structure.at(self.amplitude))

@@ -6,13 +6,11 @@ a search over sets needs no further simulation. Numbers present in the simulatio
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_solve, cholesky
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
@@ -20,6 +18,7 @@ from mffit.diagnosis.priors import SWITCH, beyond_declaration, log_prior, moving
 from mffit.diagnosis.problem import DiagnosisProblem, not_too_steep
 from mffit.effects import Effect
 from mffit.least_squares import FreeNumber
+from mffit.linearised.gaussian import Informed
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,29 +104,22 @@ class LinearSets:
             1 + c for k in members for c in range(self.members[k].columns.start, self.members[k].columns.stop)
         ]
 
-    def _root(self, columns: Sequence[int]) -> np.ndarray:
-        """Lower Cholesky factor (k, k) of the information of data and priors about the columns."""
-        information = np.eye(len(columns)) + self._products[np.ix_(columns, columns)]
-        return np.asarray(cholesky(information, lower=True, check_finite=False))
+    def _informed(self, members: Members) -> Informed:
+        """The numbers of a set, in units of their priors, as the readings inform about them."""
+        columns = self._columns(members)
+        return Informed.by(self._products[np.ix_(columns, columns)], self._products[columns, 0])
 
     def _solve(self, members: Members) -> tuple[float, np.ndarray]:
         """Weight of a set, and the most probable amounts (k,) of its columns."""
-        columns, power = self._columns(members), float(self._products[0, 0])
-        weight = sum(self._price[k] for k in members) - 0.5 * power
-        if not columns:
+        weight = sum(self._price[k] for k in members) - 0.5 * float(self._products[0, 0])
+        if not members:
             return weight, np.zeros(0)
-        try:
-            root = self._root(columns)
-        except LinAlgError:
-            return -math.inf, np.zeros(len(columns))
-        pull = self._products[columns, 0]
-        x = cho_solve((root, True), pull, check_finite=False)
-        weight += 0.5 * float(pull @ x) - float(np.sum(np.log(np.diag(root))))
+        found = self._informed(members)
         for k, place in zip(members, self._places(members), strict=True):
-            for n, amount in zip(self.members[k].numbers, x[place], strict=False):
+            for n, amount in zip(self.members[k].numbers, found.mean[place], strict=False):
                 value = n.expected + n.spread * float(amount)
                 weight += beyond_declaration(n, value, self.problem.declared)
-        return weight - 0.5 * self._beyond_bounds(members, x, root), x
+        return weight + found.gain - 0.5 * self._beyond_bounds(members, found), found.mean
 
     def _places(self, members: Members) -> list[slice]:
         """The columns of each member among those of the set."""
@@ -136,17 +128,16 @@ class LinearSets:
         )
         return [slice(a, b) for a, b in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True)]
 
-    def _beyond_bounds(self, members: Members, x: np.ndarray, root: np.ndarray) -> float:
+    def _beyond_bounds(self, members: Members, found: Informed) -> float:
         """Rise of the sum of squares if every number that is beyond its bound is moved back to it."""
-        over = np.zeros(len(x))
+        x, over = found.mean, np.zeros(len(found.mean))
         for k, place in zip(members, self._places(members), strict=True):
             for i, n in enumerate(self.members[k].numbers):
                 value = n.expected + n.spread * float(x[place][i])
                 over[place.start + i] = max(n.lower - value, value - n.upper, 0.0) / n.spread
         if not over.any():
             return 0.0
-        variance = np.diag(cho_solve((root, True), np.eye(len(x)), check_finite=False))
-        return float(np.sum(over**2 / variance))
+        return float(np.sum((over / found.u) ** 2))
 
     def taken_away(self, members: Members) -> Members:
         """The set without the effects that add less than they cost, dropped one by one, the least useful first."""
@@ -163,10 +154,8 @@ class LinearSets:
         Without columns b, the sum of squares rises by x_b' V_bb^-1 x_b and the log determinant of the information by that of
         V_bb, where V is the inverse of the information.
         """
-        x = self._solved(members)[1]
-        root = self._root(self._columns(members))
-        V = cho_solve((root, True), np.eye(len(x)), check_finite=False)
-        worth = []
+        found = self._informed(members)
+        x, V, worth = found.mean, found.covariance, []
         for k, place in zip(members, self._places(members), strict=True):
             own = V[place, place]
             worth.append(

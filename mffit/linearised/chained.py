@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import solve_triangular
-from scipy.linalg.lapack import dpotri
 
 from mffit.linearised import constants
+from mffit.linearised.gaussian import Informed
 from tir.frozen import ReadOnlyArrays
 
 
@@ -249,11 +249,12 @@ class Chained(ReadOnlyArrays):
     def evidence(self, u: np.ndarray, sizes: np.ndarray, memory: Memory) -> ChainedEvidence:
         """The log marginal likelihood for uncertainties (m,), sizes (k,) of the columns and an autocorrelation."""
         errors = ChainedErrors(self.chains, memory)
-        plain = np.column_stack([self.residual, self.columns * sizes]) / u[:, None]
-        mean, inverse, half_log, white = self._explained(errors, plain)
+        plain, white = self._rows(errors, u, sizes)
+        found = Informed.of_rows(white[:, 1:], white[:, 0])
+        mean, inverse = found.mean, found.covariance
         left = white[:, 0] - white[:, 1:] @ mean
         spread = white[:, 1:] @ inverse
-        log = float(np.sum(np.log(u))) + 0.5 * errors.log_determinant + half_log
+        log = float(np.sum(np.log(u))) + 0.5 * (errors.log_determinant + found.log_determinant)
         away, back = plain[:, 0] - plain[:, 1:] @ mean, errors.back(np.column_stack([left, spread]))
         by_u = back[:, 0] * away - 1.0 + np.einsum("ij,ij->i", back[:, 1:], plain[:, 1:])
         by_memory = np.zeros(2)
@@ -277,32 +278,15 @@ class Chained(ReadOnlyArrays):
     def foretold(self, u: np.ndarray, sizes: np.ndarray, memory: Memory) -> Foretold:
         """The leave-one-out prediction of every reading."""
         errors = ChainedErrors(self.chains, memory)
-        plain = np.column_stack([self.residual, self.columns * sizes]) / u[:, None]
-        mean, inverse, _, white = self._explained(errors, plain)
-        back = errors.back(np.column_stack([white[:, 0] - white[:, 1:] @ mean, white[:, 1:]]))
+        _, white = self._rows(errors, u, sizes)
+        found = Informed.of_rows(white[:, 1:], white[:, 0])
+        back = errors.back(np.column_stack([white[:, 0] - white[:, 1:] @ found.mean, white[:, 1:]]))
         alone = errors.known_from_others
-        known = alone - np.einsum("ij,jk,ik->i", back[:, 1:], inverse, back[:, 1:], optimize=True)
+        known = alone - np.sum((back[:, 1:] @ found.root) ** 2, axis=1)
         known = np.maximum(known, constants.LEAST_KNOWN * alone)
         return Foretold(back[:, 0] / known, 1.0 / known, 1.0 / alone)
 
-    @staticmethod
-    def _explained(
-        errors: ChainedErrors, plain: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, float, np.ndarray]:
-        """Posterior mean (k,) and covariance (k, k) of the numbers, half the log determinant of its inverse, whitened rows."""
-        white = errors.whiten(plain)
-        root = lower_factor(white[:, 1:])
-        inverse = dpotri(root, lower=1)[0] if len(root) else root
-        inverse = np.tril(inverse) + np.tril(inverse, -1).T
-        mean = inverse @ (white[:, 1:].T @ white[:, 0])
-        return mean, inverse, float(np.sum(np.log(np.diag(root)))), white
-
-
-def lower_factor(A: np.ndarray) -> np.ndarray:
-    """Lower Cholesky factor of A'A + 1, even if A is so large that rounding loses the 1 (a model far from the readings)."""
-    ones = np.eye(A.shape[1])
-    try:
-        return np.linalg.cholesky(A.T @ A + ones)
-    except np.linalg.LinAlgError:  # slower, but never fails
-        _, upper = np.linalg.qr(np.vstack([A, ones]))
-        return np.asarray((upper * np.where(np.diag(upper) < 0.0, -1.0, 1.0)[:, None]).T)
+    def _rows(self, errors: ChainedErrors, u: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Residual and columns (m, 1 + k) over their uncertainties, and the same whitened."""
+        plain = np.column_stack([self.residual, self.columns * sizes]) / u[:, None]
+        return plain, errors.whiten(plain)

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.linalg.blas import dtrmm
-from scipy.linalg.lapack import dtrtri
 
+from mffit.linearised.gaussian import Informed
 from tir.frozen import ReadOnlyArrays
 
 ROUNDING = 1e-13
@@ -108,19 +108,17 @@ class Mixed(ReadOnlyArrays):
         square = flat.T @ flat  # a product with its own transpose is half the work
         information = w * sums.common - w * w * square
         pull = w * sums.pull - w * w * sums.own_pull.ravel() @ through.reshape(-1, m)
-        whole = size[:, None] * information * size
-        factor = _factor(whole, ROUNDING * float(np.max(w * np.diag(sums.common) * size**2, initial=0.0)))
-        root = dtrtri(np.tril(factor[0]), lower=1)[0].T if m else np.zeros((0, 0))
-        scaled = cho_solve(factor, size * pull, check_finite=False)
+        rounding = ROUNDING * float(np.max(w * np.diag(sums.common) * size**2, initial=0.0))
+        found = Informed.by(size[:, None] * information * size, size * pull, rounding)
         return MixedPosterior(
-            mean=size * scaled,
-            root=size[:, None] * root,
+            mean=size * found.mean,
+            root=size[:, None] * found.root,
             pull=pull,
-            scaled=scaled,
-            gain=np.sum(root**2, axis=1),
+            scaled=found.mean,
+            gain=np.sum(found.root**2, axis=1),
             own=own,
             through=through,
-            log_determinant=2.0 * float(np.sum(np.log(np.diag(factor[0]))))
+            log_determinant=found.log_determinant
             + 2.0 * float(np.sum(np.log(np.diagonal(inner, axis1=1, axis2=2)))),
         )
 
@@ -170,23 +168,6 @@ class Mixed(ReadOnlyArrays):
         return LeftOutReadings(
             rows=np.concatenate(order), error=covariance @ np.concatenate(moved), covariance=covariance
         )
-
-
-def _factor(whole: np.ndarray, rounding: float) -> tuple[np.ndarray, bool]:
-    """Lower Cholesky factor of 1 + ``whole``, where only rounding makes eigenvalues of ``whole`` negative.
-
-    ``rounding`` is added to the diagonal and increased until the factorisation succeeds.
-    """
-    while True:
-        try:
-            factor: tuple[np.ndarray, bool] = cho_factor(
-                (1.0 + rounding) * np.eye(len(whole)) + whole, lower=True, check_finite=False
-            )
-            return factor
-        except np.linalg.LinAlgError:
-            if not np.all(np.isfinite(whole)):
-                raise
-            rounding *= 10.0
 
 
 class _Sums(NamedTuple):

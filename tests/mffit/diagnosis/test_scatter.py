@@ -12,7 +12,7 @@ from mffit.diagnosis.noise import MemorySpan, Noise, Scatter
 from mffit.diagnosis.scatter import ExplainingColumns, learned
 from mffit.diagnosis.stated import stated_noise
 from mffit.diagnosis.tails import beyond_weights, heavy_tails, outlying, weights
-from mffit.linearised.chained import lower_factor
+from mffit.linearised.gaussian import Informed
 from mffit.points import make_points
 from mffit.scatter import rms
 
@@ -263,9 +263,10 @@ def test_columns_of_any_size_have_a_factor():
     """A model far from the readings: rounding in A'A loses the 1 that makes it positive definite."""
     rng = np.random.default_rng(5)
     A = rng.normal(size=(40, 1)) @ rng.normal(size=(1, 6)) * 1e10
-    root = lower_factor(A)
+    root = Informed.of_rows(A, np.zeros(40)).factor
     assert np.all(np.diag(root) > 0.0)
     assert np.allclose(root, np.tril(root))
     assert np.allclose(root @ root.T, A.T @ A + np.eye(6), rtol=1e-9, atol=0.0)
     small = rng.normal(size=(40, 6))
-    assert np.allclose(lower_factor(small) @ lower_factor(small).T, small.T @ small + np.eye(6))
+    root = Informed.of_rows(small, np.zeros(40)).factor
+    assert np.allclose(root @ root.T, small.T @ small + np.eye(6))

@@ -1,0 +1,83 @@
+"""Numbers with standard normal priors, informed by readings: the estimate behind every linear model of this package.
+
+Readings r = X numbers + errors, whitened so that the errors are independent with variance 1, and scaled so that every column of X
+is a change by one prior standard deviation. Evidence and posterior follow from the information X'X and the pull X'r alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg.lapack import dtrtri
+
+from tir.frozen import ReadOnlyArrays
+
+
+@dataclass(frozen=True, eq=False)
+class Informed(ReadOnlyArrays):
+    """The posterior of numbers (k,) with independent standard normal priors."""
+
+    factor: np.ndarray  #: (k, k) lower Cholesky factor of 1 + information
+    pull: np.ndarray  #: (k,) score of the readings at zero
+
+    @classmethod
+    def by(cls, information: np.ndarray, pull: np.ndarray, rounding: float = 0.0) -> Informed:
+        """The posterior from the information (k, k) of the readings and their pull (k,).
+
+        ``rounding`` is added to the diagonal. It is increased until the information is positive definite, because rounding of a
+        difference of large sums can make eigenvalues negative.
+        """
+        ones = np.eye(len(pull))
+        while True:
+            try:
+                factor = cho_factor((1.0 + rounding) * ones + information, lower=True, check_finite=False)[0]
+                return cls(np.tril(factor), pull)
+            except np.linalg.LinAlgError:
+                if not np.all(np.isfinite(information)):
+                    raise
+                rounding = 10.0 * rounding or np.finfo(float).eps * float(np.max(np.diag(information)))
+
+    @classmethod
+    def of_rows(cls, columns: np.ndarray, residual: np.ndarray) -> Informed:
+        """The posterior from whitened columns (m, k) and a whitened residual (m,), even for huge columns."""
+        ones = np.eye(columns.shape[1])
+        try:
+            factor = np.linalg.cholesky(columns.T @ columns + ones)
+        except np.linalg.LinAlgError:  # rounding loses the 1; QR is slower, but never fails
+            _, upper = np.linalg.qr(np.vstack([columns, ones]))
+            factor = (upper * np.where(np.diag(upper) < 0.0, -1.0, 1.0)[:, None]).T
+        return cls(factor, columns.T @ residual)
+
+    @cached_property
+    def mean(self) -> np.ndarray:
+        """Posterior mean (k,)."""
+        return np.asarray(cho_solve((self.factor, True), self.pull, check_finite=False))
+
+    @cached_property
+    def root(self) -> np.ndarray:
+        """Upper triangular matrix (k, k); root @ root.T is the posterior covariance."""
+        k = len(self.pull)
+        return np.asarray(dtrtri(self.factor, lower=1)[0].T) if k else np.zeros((0, 0))
+
+    @cached_property
+    def covariance(self) -> np.ndarray:
+        """Posterior covariance (k, k)."""
+        return np.asarray(self.root @ self.root.T)
+
+    @property
+    def u(self) -> np.ndarray:
+        """Posterior standard deviations (k,)."""
+        return np.asarray(np.sqrt(np.sum(self.root**2, axis=1)))
+
+    @property
+    def log_determinant(self) -> float:
+        """Log determinant of 1 + information."""
+        return 2.0 * float(np.sum(np.log(np.diag(self.factor))))
+
+    @property
+    def gain(self) -> float:
+        """Log evidence of the readings with the numbers, less that without them."""
+        return 0.5 * (float(self.pull @ self.mean) - self.log_determinant)
