@@ -6,7 +6,11 @@ from tir.constant import Count, Real
 
 SMALLEST_LOAD_IN_NEWTONS = Real(20.0, "N", "If all loads of a file are below this, they are in kilonewtons.")
 RARE_SAMPLES = Real(0.01, "-", "Share of samples that spikes spoil; more have a cause, such as a wrong unit.")
-STANDSTILL = Real(0.1, "-", "Share of the usual speed below which the wheel stands.")
+STANDSTILL = Real(
+    0.02,
+    "-",
+    "Share of the usual speed below which the wheel stands: spring rates are run at a twentieth of it.",
+)
 CLOCK_WITHIN_STEP = Real(
     0.5,
     "-",
