@@ -112,18 +112,21 @@ def _of_piece(settings: SteadySettings, scale: Scale) -> list[Stretch]:
 def _load_changes(settings: SteadySettings, moving: np.ndarray) -> np.ndarray:
     """Mask (n,) of the samples in which the load goes to another set-point, of those in which it is ``moving`` (n,).
 
-    A load that turns back, keeps moving without a rest or goes on before and after is a profile, and all readings follow it.
+    Any other movement is a profile, which all readings follow. Before and after the middle of its movement, the mean loads
+    differ by the whole range in a step between rests, by half of it along an even ramp, by little where the load turns back: a
+    change of set-point is nearer to the step.
     """
-    smooth, changing = _smoothed(settings, "Fz")[0], moving.copy()
-    wanders, rest = moving.copy(), samples_in(settings.time, _shortest_plateau(settings))
-    lag = samples_in(settings.time, constants.COMPARED_APART)
+    smooth, changing, wanders = _smoothed(settings, "Fz")[0], moving.copy(), moving.copy()
+    rest = samples_in(settings.time, _shortest_plateau(settings))
     for begin, end in runs(~moving):
         wanders[begin:end] = end - begin < rest
     for begin, end in runs(wanders):
-        way = smooth[max(begin - lag, 0) : end + lag : lag]
-        back = 0.5 * (np.sum(np.abs(np.diff(way))) - abs(way[-1] - way[0]))
-        beside = np.ptp(smooth[max(begin - lag - rest, 0) : end + lag + rest]) - np.ptp(way)
-        if end - begin > 2 * rest or max(back, beside) > constants.SWEPT_SHARE * np.ptp(way):
+        if not np.any(moving[begin:end]):
+            continue
+        middle = begin + int(np.median(np.flatnonzero(moving[begin:end])))
+        before, after = smooth[max(begin - rest, 0) : middle + 1], smooth[middle : end + rest]
+        apart = abs(float(np.mean(after) - np.mean(before)))
+        if apart < 0.5 * (1.0 + 0.5) * np.ptp([*before, *after]):
             changing[begin:end] = False
     return changing
 
@@ -150,7 +153,8 @@ def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) ->
         name: constants.SWEPT_SHARE * np.ptp(_smoothed(settings, name)[0]) if staircase else 0.0
         for name in STEP
     }
-    shortest = 0.0 if staircase else _shortest_plateau(settings)
+    # The forces of a rest shorter than their transient never settle: it is part of a movement.
+    shortest = _transient(settings) if staircase else _shortest_plateau(settings)
     found = [
         _with_its_load(settings, s) for s, seconds in zip(rests, held, strict=True) if seconds >= shortest
     ]
@@ -220,11 +224,14 @@ def _shortest_plateau(settings: SteadySettings, *, roll: bool = False) -> float:
 
     ``roll``: or below which it gives no point, because the wheel does not roll far enough either.
     """
+    transient = _transient(settings)
+    return min(constants.SHORTEST_STRETCH, transient if roll and transient else np.inf) + transient
+
+
+def _transient(settings: SteadySettings) -> float:
+    """Time [s] in which the forces settle after a change; 0 at standstill, where nothing rolls."""
     speed = float(np.median(settings.V))
-    if not speed > 0.0:
-        return float(constants.SHORTEST_STRETCH)
-    longest = constants.TRANSIENT_ROLL / speed if roll else np.inf
-    return min(constants.SHORTEST_STRETCH, longest) + constants.TRANSIENT_ROLL / speed
+    return constants.TRANSIENT_ROLL / speed if speed > 0.0 else 0.0
 
 
 def _swept(

@@ -359,6 +359,33 @@ def test_a_load_profile_does_not_cut_the_sweep_of_an_angle(read, cycle):
     )
 
 
+def test_a_load_that_rises_again_and_again_rests_nowhere(read):
+    """A sawtooth of 10 s: neither its jumps nor what lies between two of them is a plateau that never settles."""
+    t = np.arange(0.0, 60.0, 0.01)
+    table = recording(100.0, alpha_deg=np.full(len(t), 3.0))
+    found = read(
+        table.assign(
+            Fz_N=200.0 + 1400.0 * (t / 10.0 % 1.0) + np.random.default_rng(8).normal(0.0, 5.0, len(t))
+        )
+    )
+    assert {note.kind for note in found.stretches} == {SWEEP}
+    assert not any("steady" in sentence for sentence in found.warnings)
+
+
+@pytest.mark.parametrize("speed", [0.9, 10.0])
+def test_a_run_for_the_spring_rate_gives_its_points(read, speed):
+    """The load goes up and down at walking pace, before sweeps of sideslip at a held load."""
+    still = recording(20.0, alpha_deg=np.zeros(400))
+    still = still.assign(Fz_N=200.0 + 70.0 * (10.0 - np.abs(np.arange(400) / 20.0 - 10.0)), V_mps=speed)
+    swept = recording(20.0, alpha_deg=np.tile(triangle(20.0, 20.0, 8.0), 2))
+    table = pd.concat([still, swept.assign(time_s=swept.time_s + 25.0)], ignore_index=True)
+    found = read(table)
+    assert {note.swept for note in of_kind(found, SWEEP)} == {"Fz_N", "alpha_deg"}
+    (rising,) = [note for note in of_kind(found, SWEEP) if note.swept == "Fz_N"]
+    assert rising.end_s - rising.begin_s > 15.0
+    assert not [one for one in found.left_out if one.rule == "standstill"]
+
+
 def test_a_load_that_wanders_by_a_tenth_is_held(read):
     table = recording(20.0, alpha_deg=np.full(800, 3.0))
     table["Fz_N"] *= 1.0 + 0.1 * np.sin(np.arange(800) / 100.0)
