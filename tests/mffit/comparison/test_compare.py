@@ -268,7 +268,7 @@ def test_the_cornering_stiffness_of_a_disc_has_the_uncertainty_that_its_build_st
     (doubtful / "result.json").write_text(json.dumps(result))
     rows = {row.load: row for row in mffit.compare(out, doubtful).numbers if row.key == "C_alpha_N_per_rad"}
     assert (rows[1400.0].u_first, rows[1400.0].u_second) == pytest.approx((u, 2.0 * u), rel=1e-3)
-    assert all(row.u_second >= 2.0 * u * abs(row.second) / size for row in rows.values())
+    assert all(row.u_second > 1.99 * u * abs(row.second) / size for row in rows.values())
     sound, other = (row.numbers["C_alpha_N_per_rad"] for row in pipeline.fleet([out, doubtful]).rows)
     assert (sound.u, other.u) == pytest.approx((u, 2.0 * u), rel=1e-2)
 
