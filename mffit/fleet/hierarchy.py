@@ -17,7 +17,7 @@ from mffit.fit.priors import scatter
 from mffit.fleet import constants
 from mffit.linearised.mixed import Mixed, MixedPosterior, Variances
 from mffit.numbers import Numbers
-from mffit.rig_errors import error_of, rig_estimates
+from mffit.rig_errors import OF_RUN, error_of, rig_estimates
 from tir.frozen import ReadOnlyArrays
 from tir.parameters import BY_NAME
 
@@ -65,14 +65,19 @@ class Hierarchy:
     tyres: tuple[TyreEstimate, ...]  #: in the order given
     rig: Mapping[str, tuple[float, float]]  #: common rig error -> (value, standard uncertainty)
     declared: Mapping[str, tuple[float, float]]  #: common rig error -> declared (value, standard uncertainty)
-    population: Mapping[str, Population]  #: by coefficient that at least two tyres inform
+    population: Mapping[str, Population]
+    """By coefficient that at least two tyres inform; empty if there are unlike kinds of tyres."""
 
 
 keys(Hierarchy, "errors population", errors=lambda rig: rig_estimates(rig.rig))
 
 
 def estimate(found: Sequence[Numbers]) -> Hierarchy:
-    """The joint estimate of all tyres of one rig; for one tyre, its own build's estimate with PECP1 and PECP2 free."""
+    """The joint estimate of all tyres of one rig; for one tyre, its own build's estimate with PECP1 and PECP2 free.
+
+    Names of coefficients end in ``@`` and the kind of the tyre if there are unlike ones. A coefficient that only one tyre has
+    keeps the prior of its build.
+    """
     tyres = _Tyres(found)
     tau = tyres.general.copy()
     learnt = tyres.count >= constants.FEWEST_TYRES_FOR_SCATTER
@@ -101,9 +106,10 @@ class _Tyres:
         self.count = np.array([sum(name in i.names for i in found) for name in self.own])
         self.centre, spread = _prior(found, self.own)
         self.rig_centre, self.rig_spread = _prior(found, self.shared)
-        width = np.array([BY_NAME[name].width for name in self.own])
+        plain = [_plain(name) for name in self.own]
+        width = np.array([BY_NAME[name].width for name in plain])
         general = [
-            scatter(n, c, from_base=False, curved=False) for n, c in zip(self.own, self.centre, strict=True)
+            scatter(n, c, from_base=False, curved=False) for n, c in zip(plain, self.centre, strict=True)
         ]
         size = np.maximum(np.abs(self.centre), 1.0)  # of coefficients without bounds
         width, scattered = (np.where(np.isfinite(x), x, size) for x in (width, general))
@@ -115,8 +121,9 @@ class _Tyres:
                 for name, u in zip(self.own, self.known.tolist(), strict=True)
             ]
         )
-        if len(found) == 1:  # one tyre keeps the prior of its build
-            self.general, self.known = self.known, 1e-6 * self.known
+        lone = self.count == 1
+        self.general = np.where(lone, self.known, self.general)
+        self.known = np.where(lone, 1e-6 * self.known, self.known)
         self.mine = [[self.own.index(i.names[k]) for k in _rows(i, rig=False)] for i in found]
         self.model = self._model()
 
@@ -177,7 +184,7 @@ class _Tyres:
         tyres = []
         for k, mine in enumerate(self.mine):
             x, covariance = self._own(found, k, with_mean=True)
-            names = tuple(self.own[j] for j in mine)
+            names = tuple(_plain(self.own[j]) for j in mine)
             strain = self._strain(k, found, common)
             tyres.append(TyreEstimate(names, self.centre[mine] + x, covariance, strain))
         return Hierarchy(
@@ -192,7 +199,7 @@ class _Tyres:
                     tyres=int(self.informing[k]),
                 )
                 for k, name in enumerate(self.own)
-                if self.informing[k] >= 2
+                if self.informing[k] >= 2 and OF_RUN not in name
             },
         )
 
@@ -219,6 +226,11 @@ class _Tyres:
             for i in common
             if _informs(self.found[k], self.shared[i], float(self.rig_spread[i]))
         }
+
+
+def _plain(name: str) -> str:
+    """The name of a coefficient without its kind of tyre."""
+    return name.partition(OF_RUN)[0]
 
 
 def _rows(one: Numbers, *, rig: bool) -> list[int]:

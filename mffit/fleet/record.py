@@ -60,8 +60,8 @@ keys(
 class FleetScatter:
     """Scatter of one number between tyres, and the typical uncertainty."""
 
-    mean: float
-    sd: float  #: between the tyres
+    mean: float | None  #: None of unlike kinds of tyres
+    sd: float  #: between the tyres of one kind
     u: float  #: rms of the stated standard uncertainties
     tyres: int
     chance: float  #: probability that tyres which are equal scatter so much
@@ -89,6 +89,11 @@ class Fleet:
     notes: tuple[str, ...]
 
     @property
+    def kinds(self) -> list[int]:
+        """The kind of each tyre, counted from 0: those of one nominal load and pressure, and of one size if all state one."""
+        return kinds_of([row.specimen for row in self.rows])
+
+    @property
     def estimates(self) -> dict[str, str]:
         """The known estimates of eps_gamma, in words; without the direct method's where all files carry it."""
         known = {key: words for key, words in EPSILON.items() if any(self.numbers(key))}
@@ -102,26 +107,48 @@ class Fleet:
             return [getattr(row, key) for row in self.rows]
         return [row.numbers.get(key) for row in self.rows]
 
+    @property
+    def scattered(self) -> bool:
+        """Whether two tyres of one kind have any number."""
+        return bool(_scatters(self))
+
     def scatter(self, key: str) -> FleetScatter | None:
-        """Scatter of one number over all specimens that have it; None for fewer than two."""
-        found = [q for q in self.numbers(key) if q is not None]
-        return scatter_of(found) if len(found) > 1 else None
+        """Scatter of one number between tyres of one kind; None if no two that have it are of one."""
+        kinds: dict[int, list[Quantity]] = {}
+        for kind, q in zip(self.kinds, self.numbers(key), strict=True):
+            if q is not None:
+                kinds.setdefault(kind, []).append(q)
+        several = [found for found in kinds.values() if len(found) > 1]
+        return scatter_of(*several) if several else None
 
 
 keys(Fleet, "tyres=rows scatter rigs notes", scatter=lambda found: _scatters(found))
 
 
-def scatter_of(found: Sequence[Quantity]) -> FleetScatter:
-    """Mean, scatter and typical uncertainty of at least two numbers."""
-    values, u = np.array([q.value for q in found]), np.array([q.u for q in found])
-    n, weight = len(found), 1.0 / np.maximum(u, 1e-12 * np.abs(values) + 1e-300) ** 2
-    apart = values - np.average(values, weights=weight)
+def kinds_of(specimens: Sequence[Specimen]) -> list[int]:
+    """The kind of each tyre, see :attr:`Fleet.kinds`."""
+    sized = all(one.size for one in specimens)
+    kinds = [(*one.conditions, one.size if sized else "") for one in specimens]
+    return [list(dict.fromkeys(kinds)).index(kind) for kind in kinds]
+
+
+def scatter_of(*kinds: Sequence[Quantity]) -> FleetScatter:
+    """Mean, scatter and typical uncertainty of at least two numbers of tyres of one kind; of several kinds, within them."""
+    n, squares, chi2 = 0, 0.0, 0.0
+    for found in kinds:
+        values, u = np.array([q.value for q in found]), np.array([q.u for q in found])
+        weight = 1.0 / np.maximum(u, 1e-12 * np.abs(values) + 1e-300) ** 2
+        apart = values - np.average(values, weights=weight)
+        n += len(found)
+        squares += float(np.sum((values - values.mean()) ** 2))
+        chi2 += float(np.sum(weight * apart**2))
+    free, every = n - len(kinds), [q for found in kinds for q in found]
     return FleetScatter(
-        mean=float(values.mean()),
-        sd=float(values.std(ddof=1)),
-        u=rms(u),
+        mean=float(np.mean([q.value for q in every])) if len(kinds) == 1 else None,
+        sd=math.sqrt(squares / free),
+        u=rms(np.array([q.u for q in every])),
         tyres=n,
-        chance=float(gammaincc(0.5 * (n - 1), 0.5 * np.sum(weight * apart**2))),  # of chi-square
+        chance=float(gammaincc(0.5 * free, 0.5 * chi2)),
     )
 
 

@@ -1,4 +1,4 @@
-"""What the user of a fleet should know: several rigs, outlying tyres, declarations that are too tight."""
+"""What the user of a fleet should know: unlike tyres, several rigs, outlying tyres, declarations that are too tight."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from scipy.special import ndtri
 
 from mffit.constants import PREDICTION_FALSE_ALARM
-from mffit.fleet import Hierarchy, Row, Specimen
+from mffit.fleet import Hierarchy, Row, Specimen, kinds_of
 from mffit.rig_errors import words_of
-from tir import Tyre
+from tir.errors import listed
 
 
 def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
@@ -17,6 +17,7 @@ def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[s
     far = _far_from_declared(rigs)
     limit = _surprising(sum(len(row.strain) for row in rows))
     return [
+        *_unlike(rows, rigs),
         *_several_rigs(rigs),
         *(note for row in rows for note in _outlying(row, far, limit)),
         *(
@@ -25,7 +26,6 @@ def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[s
             "case rely on the direct method."
             for name, ratio in far.items()
         ),
-        *_mixed_conditions(rows, rigs),
     ]
 
 
@@ -90,15 +90,24 @@ def _outlying(row: Row, far: Mapping[str, float], limit: float) -> list[str]:
     ]
 
 
-def _mixed_conditions(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
-    if len({nominal_conditions(row.specimen.tyre) for row in rows}) == 1:
+def _unlike(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
+    """Tyres of several kinds."""
+    kinds = kinds_of([row.specimen for row in rows])
+    if len(set(kinds)) == 1:
         return []
+    named = [
+        f"{listed([row.specimen.name for row, own in zip(rows, kinds, strict=True) if own == kind])} "
+        f"({_conditions(rows[kinds.index(kind)].specimen)})"
+        for kind in dict.fromkeys(kinds)
+    ]
     return [
-        "The tyres have different nominal loads or pressures, to which the coefficients refer: the population mixes them"
-        + (", and priors.json is not written." if len(rigs) == 1 else ".")
+        f"The tyres are of {len(named)} kinds: {'; '.join(named)}. Coefficients refer to nominal load and pressure, so "
+        "tyres are compared within a kind only, and unlike ones share nothing but the errors of their rig"
+        + ("; priors.json, which is for one kind, is not written." if len(rigs) == 1 else ".")
     ]
 
 
-def nominal_conditions(tyre: Tyre) -> tuple[float, float]:
-    """Nominal load [N] and pressure [Pa], to which the coefficients refer."""
-    return float(tyre["FNOMIN"]), float(tyre["NOMPRES"])
+def _conditions(one: Specimen) -> str:
+    """Size and nominal conditions of a tyre."""
+    load, pressure = one.conditions
+    return ", ".join(filter(None, (one.size, f"{load:g} N", f"{pressure / 1e3:g} kPa")))

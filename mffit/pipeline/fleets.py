@@ -22,13 +22,13 @@ from mffit.fleet import Fleet, Hierarchy, Row, Specimen, TyreEstimate
 from mffit.numbers import Numbers
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.build_output import numbers
-from mffit.pipeline.fleet_notes import fleet_notes, nominal_conditions, note_on_sharing
+from mffit.pipeline.fleet_notes import fleet_notes, note_on_sharing
 from mffit.progress import Progress, silent
 from mffit.quantities import COMPARED, OF_ROAD
-from mffit.rig_errors import OF_RUN
+from mffit.rig_errors import OF_RUN, error_of
 from mffit.rounding import AtLeast
 from mffit.viewer.named import tell_apart
-from tir import Quantity, Tyre
+from tir import Quantity
 
 WRITTEN = ("fleet.html", "fleet.json", "fleet.csv", "priors.json")
 
@@ -99,8 +99,23 @@ def _rig_indices(specimens: Sequence[Specimen]) -> list[int]:
 
 def _estimated(specimens: Sequence[Specimen]) -> Hierarchy | None:
     """The joint estimate of specimens, zeros shared as far as set-ups are; None if none has its information."""
-    known = [found for s in specimens if (found := s.numbers_of_setups) is not None]
-    return combining.estimate(_plainly_named(known)) if known else None
+    kinds = combining.kinds_of(specimens)
+    known = [
+        (kind, found)
+        for kind, one in zip(kinds, specimens, strict=True)
+        if (found := one.numbers_of_setups) is not None
+    ]
+    if not known:
+        return None
+    plain = _plainly_named([found for _, found in known])
+    if len(set(kinds)) > 1:
+        plain = [_of_kind(kind, found) for (kind, _), found in zip(known, plain, strict=True)]
+    return combining.estimate(plain)
+
+
+def _of_kind(kind: int, found: Numbers) -> Numbers:
+    """The same, with coefficients that count for one kind of tyre only."""
+    return found.renamed([name if error_of(name) else f"{name}{OF_RUN}{kind}" for name in found.names])
 
 
 def _plainly_named(found: Sequence[Numbers]) -> list[Numbers]:
@@ -153,20 +168,20 @@ def write_fleet(found: Fleet, out: Path) -> None:
 
 def priors_of_fleet(found: Fleet) -> dict[str, object] | None:
     """The content of ``priors.json``; None with too few tyres, several rigs or several nominal conditions."""
-    if len(found.rigs) > 1 or len({nominal_conditions(row.specimen.tyre) for row in found.rows}) > 1:
+    if len(found.rigs) > 1 or len(set(found.kinds)) > 1:
         return None
     rig = found.rigs[0]
-    return None if rig is None else priors_of_rig(rig, found.rows[0].specimen.tyre, len(found.rows))
+    return None if rig is None else priors_of_rig(rig, found.rows[0].specimen.conditions, len(found.rows))
 
 
-def priors_of_rig(rig: Hierarchy, tyre: Tyre, tyres: int) -> dict[str, object] | None:
-    """The content of ``priors.json`` from ``tyres`` tyres of the kind of ``tyre``; None if there are too few."""
+def priors_of_rig(rig: Hierarchy, conditions: tuple[float, float], tyres: int) -> dict[str, object] | None:
+    """The content of ``priors.json`` from ``tyres`` tyres of one nominal load [N] and pressure [Pa]; None if they are too few."""
     known = {
         name: priors.Prior(p.mean, math.hypot(p.u_mean, p.scatter))
         for name, p in rig.population.items()
         if p.tyres >= combining.constants.FEWEST_TYRES_FOR_SCATTER
     }
-    load, pressure = nominal_conditions(tyre)
+    load, pressure = conditions
     return priors.fleet_content({"FNOMIN": load, "NOMPRES": pressure}, tyres, known) if known else None
 
 

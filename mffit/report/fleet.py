@@ -70,20 +70,25 @@ FLEET: Mapping[str, Callable[[Fleet], Sheet]] = {"numbers": numbers_of_all}
 
 def headline(found: Fleet) -> str:
     """A sentence: in which numbers the tyres differ, and in which they agree within their uncertainty."""
-    best = [key for key in EPSILON if found.scatter(key) is not None][
-        -1:
-    ]  # listed from the worst to the best
+    best = [key for key in EPSILON if found.scatter(key) is not None][-1:]  # the best is the last
     words = dict.fromkeys(best, DIRECT["epsilon_gamma"].word) | {key: q.word for key, q in COMPARED.items()}
     scatters = {word: s for key, word in words.items() if (s := found.scatter(key)) is not None}
     apart = [word for word, s in scatters.items() if s.differ]
     alike = [word for word in scatters if word not in apart]
+    kinds = len(set(found.kinds))
+    unlike = f"Tyres of {kinds} kinds (size, nominal load or pressure) are compared within a kind: they"
+    who = "The tyres" if kinds == 1 else unlike
     parts = [
-        f"The tyres differ by more than their uncertainty in {words_listed(apart)}" if apart else "",
-        f"{'they' if apart else 'The tyres'} agree within their uncertainty in {words_listed(alike)}"
+        f"{who} differ by more than their uncertainty in {words_listed(apart)}" if apart else "",
+        f"{'they' if apart else who} agree within their uncertainty in {words_listed(alike)}"
         if alike
         else "",
     ]
-    return "; ".join(filter(None, parts)) + "." if scatters else "No number is known of two tyres."
+    if scatters:
+        return "; ".join(filter(None, parts)) + "."
+    if kinds > 1:
+        return "No two tyres are of one kind (size, nominal load and pressure), so their numbers are listed and not compared."
+    return "No number is known of two tyres."
 
 
 def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from mffit.pipeline.fleet_notes import fleet_notes, nominal_conditions
+from mffit.pipeline.fleet_notes import fleet_notes
 from mffit.pipeline.fleets import priors_of_fleet
 from mffit.rig_errors import WORDS
 
@@ -19,7 +19,7 @@ def rig(F0_N=0.0):
 
 
 def row(name="a", load=1400.0, **strain):
-    specimen = SimpleNamespace(name=name, tyre={"FNOMIN": load, "NOMPRES": 250e3})
+    specimen = SimpleNamespace(name=name, conditions=(load, 250e3), size="120/70ZR17")
     return SimpleNamespace(specimen=specimen, strain=strain)
 
 
@@ -48,14 +48,15 @@ def test_several_rigs_are_reported_and_have_no_priors():
     (note,) = fleet_notes([row(), row("b")], [rig(), None])
     assert "2 different rigs" in note
     assert "priors.json is not written" in note
-    assert priors_of_fleet(SimpleNamespace(rigs=(rig(), rig()), rows=(row(),))) is None
+    assert priors_of_fleet(SimpleNamespace(rigs=(rig(), rig()), rows=(row(),), kinds=[0])) is None
 
 
-def test_different_nominal_loads_are_reported_and_have_no_priors():
-    rows = [row(), row("b", load=1500.0)]
+def test_unlike_tyres_are_named_first_with_their_conditions_and_have_no_priors():
+    rows = [row(), row("b", load=1500.0), row("c")]
     (note,) = fleet_notes(rows, [rig()])
-    assert "different nominal loads" in note
-    assert note.endswith("and priors.json is not written.")
-    assert fleet_notes(rows, [rig(), rig()])[-1].endswith("mixes them.")
-    assert priors_of_fleet(SimpleNamespace(rigs=(rig(),), rows=tuple(rows))) is None
-    assert nominal_conditions(rows[1].specimen.tyre) == (1500.0, 250e3)
+    assert "2 kinds: a and c (120/70ZR17, 1400 N, 250 kPa); b (120/70ZR17, 1500 N, 250 kPa)" in note
+    assert note.endswith("is not written.")
+    first, *_ = fleet_notes(rows, [rig(), rig()])
+    assert "2 kinds" in first
+    assert "priors.json" not in first
+    assert priors_of_fleet(SimpleNamespace(rigs=(rig(),), rows=tuple(rows), kinds=[0, 1, 0])) is None

@@ -82,7 +82,8 @@ def one(job: harness.Job) -> Rig:
             draw.note(TOGETHER, *joint.number("PECP1"), eps)
         out.pulls = {n: (v - faults[n]) / u for n, (v, u) in together.rig.items() if n in faults}
         priors = Path(made) / "priors.json"
-        priors.write_text(json.dumps(priors_of_rig(together, result.fit.tyre, tyres)))
+        conditions = result.fit.tyre["FNOMIN"], result.fit.tyre["NOMPRES"]
+        priors.write_text(json.dumps(priors_of_rig(together, conditions, tyres)))
         for k in range(job.given.later):
             folder, true = Path(made) / f"later {k}", drawn_tyre(sample, rng)
             campaign(folder, true, sample, faults, 1000 * seed + 500 + k, pecp1="model", thin=True)

@@ -272,9 +272,53 @@ def test_the_scatter_between_tyres_is_that_of_a_sample():
 
 
 def test_one_tyre_has_no_scatter():
-    rows = [SimpleNamespace(numbers={"C_alpha": Quantity(value, 1.0, "N/rad")}) for value in (1e4, 2e4)]
-    assert Fleet((*rows[:1], SimpleNamespace(numbers={})), (), ()).scatter("C_alpha") is None
+    rows = [of_size(numbers={"C_alpha": Quantity(value, 1.0, "N/rad")}) for value in (1e4, 2e4)]
+    assert Fleet((*rows[:1], of_size(numbers={})), (), ()).scatter("C_alpha") is None
     assert Fleet(tuple(rows), (), ()).scatter("C_alpha").mean == 15e3
+
+
+def of_size(size="", load=1400.0, **content):
+    """A row of a tyre of a size and a nominal load."""
+    return SimpleNamespace(specimen=SimpleNamespace(size=size, conditions=(load, 250e3)), **content)
+
+
+@pytest.mark.parametrize(
+    ("sizes", "loads", "kinds"),
+    [
+        ("AAB", (1.0, 1.0, 1.0), [0, 0, 1]),
+        ("AAA", (1.0, 2.0, 1.0), [0, 1, 0]),
+        (("A", "", "B"), (1.0, 1.0, 1.0), [0, 0, 0]),  # a size that is not stated decides nothing
+    ],
+)
+def test_tyres_of_one_size_and_one_nominal_load_are_of_one_kind(sizes, loads, kinds):
+    assert Fleet(tuple(map(of_size, sizes, loads)), (), ()).kinds == kinds
+
+
+def test_unlike_tyres_scatter_within_their_kind():
+    """Values 1 and 2 of one kind, 101 and 104 of another, 7 alone: squares 0.5 and 4.5 with one degree of freedom each."""
+    rows = [
+        of_size(load=load, numbers={"C_alpha": Quantity(x, 1.0, "N/rad")})
+        for load, x in ((1.0, 1.0), (2.0, 101.0), (1.0, 2.0), (2.0, 104.0), (3.0, 7.0))
+    ]
+    found = Fleet(tuple(rows), (), ()).scatter("C_alpha")
+    assert (found.mean, found.sd, found.tyres) == (None, pytest.approx(math.sqrt(2.5)), 4)
+    assert found.chance == pytest.approx(math.exp(-2.5))  # of chi-square 5 with two degrees of freedom
+    assert Fleet((rows[0], rows[1], rows[4]), (), ()).scatter("C_alpha") is None
+
+
+def test_unlike_tyres_share_no_population():
+    """Without errors of the rig, each kind has the estimate that it has by itself."""
+    one, other = ([only(tyre, [0, 1]) for tyre in fleet(seed, 3)[0]] for seed in (5, 6))
+    kinds = [
+        [tyre.renamed([f"{n}@{k}" for n in tyre.names]) for tyre in of] for k, of in enumerate((one, other))
+    ]
+    mixed = estimate([*kinds[0], *kinds[1]])
+    apart = [tyre for of in (one, other) for tyre in estimate(of).tyres]
+    assert mixed.population == {}
+    for tyre, alone in zip(mixed.tyres, apart, strict=True):
+        assert tyre.names == alone.names
+        assert tyre.values == pytest.approx(alone.values, rel=1e-9)
+        assert tyre.covariance == pytest.approx(alone.covariance, rel=1e-9)
 
 
 def only(one: Numbers, keep: list[int]) -> Numbers:

@@ -49,9 +49,20 @@ def test_the_page_says_first_in_which_numbers_the_tyres_differ():
         {"C_alpha_N_per_rad": Quantity(20e3 + 1e3 * k, 100.0, "N/rad"), "mu_y": Quantity(1.1 + 0.01 * k, 0.05, "-")}
         for k in range(3)
     ]  # fmt: skip
-    rows = [Row(SimpleNamespace(epsilon_gamma=None, epsilon_direct=None), 0, one) for one in numbers]
+    sizes = ("A", "A", "B")
+    rows = [
+        Row(SimpleNamespace(epsilon_gamma=None, epsilon_direct=None, size="", conditions=(1.0, 1.0)), 0, one)
+        for one in numbers
+    ]
     assert headline(Fleet(tuple(rows), (), ())) == (
         "The tyres differ by more than their uncertainty in cornering stiffness; they agree within their uncertainty in peak "
         "side force per load of the lesser side."
     )
     assert headline(Fleet((rows[0],), (), ())) == "No number is known of two tyres."
+    for row, size in zip(rows, sizes, strict=True):
+        row.specimen.size = size
+    assert headline(Fleet(tuple(rows), (), ())) == (
+        "Tyres of 2 kinds (size, nominal load or pressure) are compared within a kind: they differ by more than their "
+        "uncertainty in cornering stiffness; they agree within their uncertainty in peak side force per load of the lesser side."
+    )
+    assert headline(Fleet(tuple(rows[1:]), (), ())).startswith("No two tyres are of one kind")
