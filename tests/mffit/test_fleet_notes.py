@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from types import SimpleNamespace
 
 import pytest
 
 from mffit.pipeline.fleet_notes import fleet_notes
 from mffit.pipeline.fleets import priors_of_fleet
-from mffit.rig_errors import WORDS
+from mffit.quantities import CHANNELS
+from mffit.rig_errors import RIG_ERRORS, WORDS
 
 
 def rig(F0_N=0.0):
@@ -32,6 +34,12 @@ def test_a_rig_far_from_its_declaration_is_reported_in_declared_deviations(sign)
     (note,) = fleet_notes([row(), row("b")], [rig(F0_N=sign * 60.0)])
     assert f"{WORDS['F0_N']}, 6 standard deviations" in note
     assert "direct method" in note
+
+
+@pytest.mark.parametrize("error", RIG_ERRORS, ids=lambda error: error.name)
+def test_every_error_of_the_rig_has_words_of_the_field(error):
+    assert error.words
+    assert not ({"alpha", "gamma", "kappa", *error.acts_on} - {*CHANNELS, "Fz"}) & {*re.findall(r"\w+", error.words)}
 
 
 def test_a_tyre_on_a_changed_rig_is_named_with_its_worst_error():
