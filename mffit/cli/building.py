@@ -65,7 +65,7 @@ def build(tyre_tomls: tuple[Path, ...], jobs: int, dask: str | None, **asked: An
             "--explain is for one TYRE_TOML; a folder that is built keeps it as explained.txt"
         )
     if len(tyre_tomls) > 1 or dask:
-        _build_many(tyre_tomls, jobs=jobs, dask=dask, **asked)
+        _build_many(tyre_tomls, jobs=dask or jobs, **asked)
     else:
         _build(tyre_tomls[0], **asked)
 

@@ -39,6 +39,7 @@ from mffit.prediction import (
 )
 from mffit.progress import JUDGING, MEASURING, READING, WRITING, Progress, silent
 from mffit.results import CORRECTION, TEMPERATURE, BuildResult
+from mffit.suspicion import Trust
 from tir import Tyre
 
 
@@ -115,25 +116,15 @@ def _result(
     config, reading = read.config, read.reading
     assert fitted.files is not None
     files, names = {use: one.tyre for use, one in fitted.files.by_use.items()}, _names(config)
+    of_uses = {use: files[use] for use in names if use != TEMPERATURE}
     if fitted.temperature is None:
         del names[TEMPERATURE]
     else:
         files[TEMPERATURE] = fitted.temperature.file.tyre
-    of_uses = {use: files[use] for use in names if use != TEMPERATURE}
-    trust, left = judged(config, reading.points, measured, fitted, of_uses)
-    said_of_trust = said(trust)  # the doubts of the reading and of single sweeps are among the warnings
-    explained = (one.sentence for one in fitted.doubts if one.looks)
-    trust = replace(
-        trust,
-        reasons=(*reading.reasons, *trust.reasons),
-        doubts=(*reading.doubts, *explained, *trust.doubts),
-    )
-    annotated = annotator(config, read.made, measured, fitted, trust)
+    of_fit, left = judged(config, reading.points, measured, fitted, of_uses)
     missed, table = _model_error(reading.points, fitted, files[fitting.fitted_use(of_uses)])
-    if trust.trusted:
-        rival = wording.rival_of_formula(left.effect)
-        remarks = (missed_sentence(missed[name], rival) for name in trust.limited if name in missed)
-        trust = replace(trust, remarks=tuple(remarks))
+    trust = _of_all(of_fit, reading, fitted, wording.rival_of_formula(left.effect), missed)
+    annotated = annotator(config, read.made, measured, fitted, trust)
     notes = (*base_notes(config, read.base), *(f"{note}." for note in reading.notes))
     fitted = replace(fitted, explanations=(*fitted.explanations, *notes))
     return BuildResult(
@@ -147,7 +138,7 @@ def _result(
         members=tuple(_members(config, fitted, ensemble, annotated)) if ensemble else (),
         plain=fitting.plain_use(config),
         warnings=(
-            *said_of_trust,
+            *said(of_fit),  # the doubts of the reading and of single sweeps are among the others
             *base_warnings(config, read.base),
             *reading.warnings,
             *measured.warnings,
@@ -162,6 +153,21 @@ def _result(
         made=read.made,
         left_out=(*reading.left_out, *left_out_by_fit(reading.points, fitted)),
         excluded=reading.excluded,
+    )
+
+
+def _of_all(
+    trust: Trust, reading: Reading, fitted: FitResult, rival: str, missed: Mapping[str, MissedAtReadings]
+) -> Trust:
+    """The judgement of the fit with reasons and doubts of the reading and of single sweeps, and remarks on the model error."""
+    explained = (one.sentence for one in fitted.doubts if one.looks)
+    reasons = (*reading.reasons, *trust.reasons)
+    remarks = (missed_sentence(missed[name], rival) for name in trust.limited if name in missed)
+    return replace(
+        trust,
+        reasons=reasons,
+        doubts=(*reading.doubts, *explained, *trust.doubts),
+        remarks=trust.remarks if reasons else tuple(remarks),
     )
 
 

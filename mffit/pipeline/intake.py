@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from mffit.output import must_be_new, new_files
 from mffit.pipeline.inputs import input_names
 from mffit.points.loading import read
 from mffit.points.stretch import stretch_table
-from mffit.recordings import DiscPath, Sniffed, Stated, disc_signs, project_text, sniff
+from mffit.recordings import Sniffed, Stated, disc_signs, project_text, sniff
 from mffit.recordings.disc import files_of_folder
 from mffit.recordings.guess import NOTHING_NAMED
 from mffit.recordings.project_file import how_to_agree, load_beyond, relative, slug, sweeps_text, tyre_found
@@ -37,13 +38,8 @@ def init_from(
     files: Sequence[str | Path],
     folder: str | Path,
     *,
-    unloaded_radius: float | None = None,
-    nominal_load: float | None = None,
-    nominal_pressure: float | None = None,
-    name: str | None = None,
     headings: Mapping[str, str] = NOTHING_NAMED,
-    disc: DiscPath | None = None,
-    belt: bool = False,
+    **known: Any,
 ) -> tuple[Sniffed, list[Path]]:
     """Write a project from recordings: ``tyre.toml``, ``stretches.csv`` and a picture of each recording.
 
@@ -51,13 +47,8 @@ def init_from(
     ----------
     files : recordings as the rig wrote them, or patterns; they are not moved
     folder : created if necessary; existing files are never replaced
-    unloaded_radius : [m]; default that of the recordings (RFREE, or half of OVALLDIA)
-    nominal_load : [N]; default that of the recordings (FNOMIN)
-    nominal_pressure : [kPa]; default that of the recordings (NOMPRES), else the pressure of most samples
-    name : name of the output files; default that of the recording, or of the folder for several
     headings : headings that are not recognised, by channel, such as ``{"p_kPa": "Druck"}``
-    disc : path of the disc
-    belt : whether the path is straight, whatever the recordings look like
+    known : fields of :class:`mffit.recordings.Stated`, such as ``nominal_load``; the recordings state the others
 
     Returns
     -------
@@ -71,11 +62,10 @@ def init_from(
         already, no axes fit, or the recordings look like those of a disc and neither ``disc`` nor ``belt`` is given, or they
         contradict the stated disc.
     """
-    folder = Path(folder)
-    stated = Stated(unloaded_radius, nominal_load, nominal_pressure, name=name, disc=disc, belt=belt)
+    folder, stated = Path(folder), Stated(**known)
     with _as_options():
         _check_keys(stated)
-        sniffed = sniff(files, unloaded_radius=unloaded_radius, headings=headings)
+        sniffed = sniff(files, unloaded_radius=stated.unloaded_radius, headings=headings)
         stated = _with_those_of_files(stated, sniffed, folder)
         sniffed, _ = project_of(sniffed, folder, stated)
         sniffed, text = _as_a_build_reads(sniffed, folder, stated)

@@ -34,8 +34,7 @@ def build_many(
     sources: Sequence[str | Path],
     out: str | Path | None = None,
     *,
-    jobs: int = 1,
-    dask: str | None = None,
+    jobs: int | str = 1,
     ensemble: int = 0,
     with_report: bool = True,
     done: Done = lambda outcome: None,
@@ -46,8 +45,8 @@ def build_many(
     ----------
     sources : paths of ``tyre.toml``
     out : folder in which each tyre gets a folder of its name; default ``out`` next to each ``tyre.toml``
-    jobs : number of processes, each of which builds one tyre at a time; 1 builds in this process
-    dask : address of a Dask scheduler, whose workers see the same files and have mffit; ``jobs`` is ignored then
+    jobs : number of processes, each of which builds one tyre at a time; 1 builds in this process. Or the address of a Dask
+        scheduler, whose workers see the same files and have mffit
     ensemble, with_report : as in :func:`build`
     done : called with every finished tyre
 
@@ -67,17 +66,17 @@ def build_many(
     wanted, finished = _jobs(paths, None if out is None else Path(out), ensemble, with_report=with_report)
     for outcome in finished.values():
         done(outcome)
-    with contextlib.closing(_outcomes(wanted, jobs, dask)) as outcomes:
+    with contextlib.closing(_outcomes(wanted, jobs)) as outcomes:
         for outcome in outcomes:
             finished[outcome.source] = outcome
             done(outcome)
     return tuple(finished[path] for path in paths)
 
 
-def _outcomes(wanted: Sequence[Job], jobs: int, dask: str | None) -> Outcomes:
+def _outcomes(wanted: Sequence[Job], jobs: int | str) -> Outcomes:
     """Outcomes of the builds as they finish."""
-    if dask:
-        return on_cluster(wanted, dask, build_one)
+    if isinstance(jobs, str):
+        return on_cluster(wanted, jobs, build_one)
     return in_processes(wanted, jobs, build_one) if jobs > 1 else (build_one(job) for job in wanted)
 
 

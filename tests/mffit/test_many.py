@@ -467,7 +467,7 @@ def test_a_cluster_continues_when_a_worker_is_killed(project, tmp_path):
         outcomes = pipeline.build_many(
             sources,
             tmp_path / "out",
-            dask=cluster.scheduler_address,
+            jobs=cluster.scheduler_address,
             with_report=False,
             done=kill_one,
         )
@@ -484,4 +484,4 @@ def test_a_cluster_continues_when_a_worker_is_killed(project, tmp_path):
 def test_an_absent_scheduler_is_reported(project):
     pytest.importorskip("distributed")
     with pytest.raises(InputError, match=r"no Dask scheduler answers at ht tp://x"):
-        pipeline.build_many([project / "tyre.toml"], project / "all", dask="ht tp://x")
+        pipeline.build_many([project / "tyre.toml"], project / "all", jobs="ht tp://x")
