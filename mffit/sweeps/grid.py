@@ -51,8 +51,7 @@ def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:
         raise InputError("is empty; write one line of headings and one row per point", file=path)
     widths = Counter(_width(row) for row in rows)
     usual = max(widths, key=lambda width: (widths[width], width))
-    # The headings are the first row with most cells filled, because a title fills few.
-    at = next((k for k, row in enumerate(rows) if 2 * sum(c != "" for c in row) > usual), 0)
+    at = _row_of_headings(rows, usual)
     _check_texts(rows, at, lines, path)
     upper, lower, used = _rows_of_headings(rows, at)
     headings, units = _headings_of(upper, lower)
@@ -63,6 +62,19 @@ def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:
     units = tuple(below or own for below, own in zip(stated, units, strict=True))
     title = " ".join(str(cell) for row in rows[:at] for cell in row if cell != "")
     return Head(headings, units, at, used, title)
+
+
+def _row_of_headings(rows: Sequence[Row], usual: int) -> int:
+    """The first row of the texts that stand above the data; ``usual`` is the number of cells of most rows.
+
+    A title fills few of the cells. Blocks of keys and values, which loggers write above the headings, hold single numbers.
+    """
+    full = [k for k, row in enumerate(rows) if 2 * sum(c != "" for c in row) > usual]
+    data = next((k for k in full if 2 * sum(c != "" and is_number(c) for c in rows[k]) > usual), 0)
+    at = next((k for k in reversed(full) if k < data and _without_numbers(rows[k])), full[0] if full else 0)
+    while at - 1 in full and _without_numbers(rows[at - 1]):
+        at -= 1
+    return at
 
 
 def _check_texts(rows: Sequence[Row], at: int, lines: Sequence[int], path: Path) -> None:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import scipy.io
+from flat_belt import recording
 from small_rigs import truth
 
 from mffit.recordings import sniff
@@ -106,3 +107,26 @@ def test_tydex_in_per_cent_about_the_wheel_centre_needs_no_hand(tmp_path):
     np.testing.assert_allclose(drawn.Fy, reference.Fy, atol=0.02 * np.max(np.abs(reference.Fx)))
     assert np.ptp(drawn.kappa) == pytest.approx(0.4, rel=0.1)
     assert np.degrees(np.min(drawn.alpha)) == pytest.approx(-4.0, abs=0.1)
+
+
+def test_a_block_of_keys_and_values_stands_above_the_headings(tmp_path):
+    """As MoTeC's programs export it: everything is quoted, and some keys have numbers."""
+    table = recording(loads=(600.0,), cambers=(0.0,), pressures=(83.0,)).round(3)
+    headings = {"ET": "s", "SA": "deg", "IA": "deg", "FZ": "N", "FY": "N", "MZ": "N.m", "V": "km/h"}
+    rows = [
+        ["Format", "MoTeC CSV File", "", "", "Workbook", "Rig", ""],
+        ["Log Date", "12/03/2026", "", "", "Origin Time", "0.000", "s"],
+        ["Range", "entire outing", "", "", "End Distance", "594", "m"],
+        ["Beacon Markers", "6.0 12.0", *[""] * 5],
+        [],
+        list(headings),
+        list(headings.values()),
+        [],
+        *table[list(headings)].to_numpy().tolist(),
+    ]
+    lines = [",".join(f'"{cell}"' for cell in row) for row in rows]
+    (tmp_path / "a.csv").write_text("\r\n".join(lines) + "\r\n")
+    raw = formats.read(tmp_path / "a.csv")
+    assert dict(zip(raw.headings, raw.units, strict=True)) == headings
+    assert (len(raw), raw.lines[0]) == (len(table), 9)
+    np.testing.assert_allclose(raw.column("FY"), table["FY"])
