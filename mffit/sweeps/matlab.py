@@ -14,7 +14,7 @@ import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +23,7 @@ import numpy as np
 from mffit.errors import InputError
 from mffit.sweeps import matlab_apart
 from mffit.sweeps.extras import TIME_TO_READ, check_size, damaged, largest, needed, undamaged
-from mffit.sweeps.matlab_apart import LARGEST_TEXT, MOST_LEAVES, SIZE, TEXTS, TROUBLE, Leaf
+from mffit.sweeps.matlab_apart import LARGEST_TEXT, SIZE, TEXTS, TROUBLE, Leaf, collect
 from mffit.sweeps.nested import Content, content_of, without_columns
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.wide import stacked
@@ -140,54 +140,33 @@ def _hdf5(path: Path) -> list[Leaf]:
         _refuse_other_files(file, path, h5py)
         for name, item in file.items():
             if not name.startswith("#"):
-                _collect((name,), item, file, found)
+                collect((name,), _plain(item, file), found)
     return found
 
 
-def _collect(names: tuple[str, ...], item: Any, file: Any, found: list[Leaf]) -> None:
-    """Add the leaves of a variable of v7.3; the elements of an array of structures are references."""
-    if len(found) > MOST_LEAVES:
-        raise ValueError(f"it holds more than {MOST_LEAVES} arrays")
-    kind = item.attrs.get("MATLAB_class", b"")
-    kind = kind.decode() if isinstance(kind, bytes) else str(kind)
+def _plain(item: Any, file: Any) -> Any:
+    """A variable of v7.3 as :func:`collect` takes it; cells, and the elements of an array of structures, are references."""
+    kind = _class_of(item)
     if "MATLAB_object_decode" in item.attrs:
-        if kind != "FileWrapper__":
-            found.append((names, {"object": kind}))
-    elif hasattr(item, "items"):
-        if {"name", "units"} <= set(item) and item["name"].dtype.kind == "O":
-            found.append((names, {key: _referred(file, item[key]) for key in ("name", "units")}))
-            return
-        for name, one in item.items():
-            _collect((*names, name), one, file, found)
-    elif kind == "char":
-        found.append((names, _letters(item)))
-    elif item.dtype.kind in "fiu" and item.size > 1:
-        is_vector = item.size == max(item.shape)
-        found.append(
-            (
-                names,
-                np.asarray(item, dtype=float).reshape(-1) if is_vector else {"shape": [*item.shape[::-1]]},
-            )
-        )
-    elif item.dtype.kind == "O" and kind == "cell":
-        cells = [file[one] for one in np.asarray(item).reshape(-1)]
-        if all(hasattr(one, "items") for one in cells):  # of structures, as an array of them
-            for k, one in enumerate(cells, 1):
-                _collect((*names[:-1], f"{names[-1]}({k})"), one, file, found)
-        elif any(one.dtype.kind == "f" and one.size > 1 for one in cells if hasattr(one, "dtype")):
-            found.append((names, {"cells": True}))
-    elif item.dtype.kind == "O":
-        _collect_elements(names, [file[one] for one in np.asarray(item).reshape(-1)], file, found)
+        return None if kind == "FileWrapper__" else {"object": kind}
+    if hasattr(item, "items"):
+        fields = {name: _plain(one, file) for name, one in item.items()}
+        if all(
+            isinstance(value, tuple) and _class_of(item[name]) != "cell" for name, value in fields.items()
+        ):
+            return [dict(zip(fields, parts, strict=True)) for parts in zip(*fields.values(), strict=True)]
+        return [fields]
+    if kind == "char":
+        return _letters(item)
+    if item.dtype.kind == "O":
+        return tuple(_plain(file[one], file) for one in np.asarray(item).reshape(-1))
+    return np.asarray(item).T if item.dtype.kind in "fiu" else None
 
 
-def _collect_elements(names: tuple[str, ...], elements: Sequence[Any], file: Any, found: list[Leaf]) -> None:
-    """Add the leaves of one field of an array of structures, whose single numbers make a vector."""
-    if all(getattr(one, "size", 0) == 1 and one.dtype.kind in "fiu" for one in elements):
-        found.append((names, np.array([float(np.asarray(one).reshape(-1)[0]) for one in elements])))
-        return
-    *above, parent, name = ("", *names)
-    for k, one in enumerate(elements, 1):
-        _collect((*above, f"{parent}({k})", name), one, file, found)
+def _class_of(item: Any) -> str:
+    """The class that MATLAB gives a variable; "" without one."""
+    kind = item.attrs.get("MATLAB_class", b"")
+    return kind.decode() if isinstance(kind, bytes) else str(kind)
 
 
 def _refuse_other_files(file: Any, path: Path, h5py: Any) -> None:
@@ -201,11 +180,6 @@ def _refuse_other_files(file: Any, path: Path, h5py: Any) -> None:
     )
     if any(elsewhere):
         raise InputError("takes numbers out of other files; save it as one file", file=path)
-
-
-def _referred(file: Any, cells: Any) -> list[str]:
-    """The texts of a cell array, which v7.3 stores as references."""
-    return [_letters(file[reference]) for reference in np.asarray(cells).reshape(-1)]
 
 
 def _letters(item: Any) -> str:

@@ -26,71 +26,79 @@ CHUNK = 1 << 20
 MOST_LEAVES = 10_000  # arrays of one file
 Leaf = tuple[tuple[str, ...], Any]
 """The names that lead to it, and a vector (n,), a text, or a mapping: ``name`` and ``units`` of channels, the class of an
-``object`` that only MATLAB reads, or the ``shape`` of a matrix."""
+``object`` that only MATLAB reads, the ``shape`` of a matrix, or ``cells`` with vectors that have no names."""
 
 
-def load(path: Path) -> list[Leaf]:
-    """What the file holds: see :data:`Leaf`; names and units of the structure ``channel`` are one leaf."""
-    import scipy.io
+def collect(path: tuple[str, ...], value: Any, found: list[Leaf]) -> None:
+    """Add the leaves of a variable to ``found``.
 
-    loaded = scipy.io.loadmat(path, chars_as_strings=True)
-    found: list[Leaf] = []
-    for name, value in loaded.items():
-        if not name.startswith("__") and isinstance(value, np.ndarray):
-            _collect((name,), value, found)
-    return found
-
-
-def _collect(path: tuple[str, ...], value: np.ndarray, found: list[Leaf]) -> None:
-    """Add the leaves of a variable."""
+    The variable is a text, an array of numbers, a tuple of cells, a list of structures of the same fields (a list of one for a
+    single structure), a mapping as in :data:`Leaf`, or None for anything else.
+    """
     if len(found) > MOST_LEAVES:
         raise ValueError(f"it holds more than {MOST_LEAVES} arrays")
-    names = value.dtype.names or ()
-    if {"s0", "s1", "s2"} <= set(names):  # an object, as scipy shows it: name, system and class
-        name, _, kind = (value.reshape(-1)[0][key] for key in ("s0", "s1", "s2"))
-        found.append(((_decoded(name),), {"object": _decoded(kind)}))
-    elif {"name", "units"} <= set(names) and value.size == 1 and value.reshape(-1)[0]["name"].dtype == object:
-        found.append((path, {key: _texts(value.reshape(-1)[0][key]) for key in ("name", "units")}))
-    elif names:
+    if isinstance(value, list):
         _collect_fields(path, value, found)
-    elif value.dtype == object and all(np.asarray(cell).dtype.names for cell in value.reshape(-1)):
-        for k, cell in enumerate(value.reshape(-1), 1):  # a cell array of structures, as an array of them
-            _collect((*path[:-1], f"{path[-1]}({k})"), np.asarray(cell), found)
-    elif value.dtype == object and any(
-        np.asarray(cell).dtype.kind == "f" and np.asarray(cell).size > 1 for cell in value.reshape(-1)
+    elif isinstance(value, tuple) and all(isinstance(cell, list) for cell in value):
+        for k, cell in enumerate(value, 1):  # structures in cells, as an array of them
+            collect((*path[:-1], f"{path[-1]}({k})"), cell, found)
+    elif isinstance(value, tuple):
+        if any(isinstance(cell, np.ndarray) and cell.dtype.kind == "f" and cell.size > 1 for cell in value):
+            found.append((path, {"cells": True}))
+    elif not isinstance(value, np.ndarray):
+        found += [(path, value)] if value is not None else []
+    elif value.size > 1:
+        is_vector = value.size == max(value.shape)
+        vector = value.reshape(-1).astype(float, copy=False) if is_vector else None
+        found.append((path, {"shape": [*value.shape]} if vector is None else vector))
+
+
+def _collect_fields(path: tuple[str, ...], elements: list[dict[str, Any]], found: list[Leaf]) -> None:
+    """Add the leaves of structures; single numbers of several of them make a vector."""
+    fields = {name: [one[name] for one in elements] for name in (elements[0] if elements else ())}
+    if {"name", "units"} <= fields.keys() and not any(
+        isinstance(part, np.ndarray) for parts in fields.values() for part in parts
     ):
-        found.append((path, {"cells": True}))
-    elif value.dtype.kind == "U" and value.size == 1:
-        found.append((path, str(value.reshape(-1)[0])[:LARGEST_TEXT].strip()))
-    elif value.dtype.kind in "fiub" and value.size > 1 and value.size == max(value.shape):
-        found.append((path, value.reshape(-1).astype(float, copy=False)))
-    elif value.dtype.kind in "fiub" and value.size > 1:
-        found.append((path, {"shape": list(value.shape)}))
-
-
-def _collect_fields(path: tuple[str, ...], value: np.ndarray, found: list[Leaf]) -> None:
-    """Add the leaves of a structure, or of an array of them, whose single numbers make a vector."""
-    elements = value.reshape(-1)
-    for name in value.dtype.names or ():
-        parts = [np.asarray(element[name]) for element in elements]
-        if len(parts) > 1 and all(part.size == 1 and part.dtype.kind in "fiub" for part in parts):
+        found.append(
+            (
+                path,
+                {key: [text for part in fields[key] for text in _texts(part)] for key in ("name", "units")},
+            )
+        )
+        return
+    for name, parts in fields.items():
+        if len(parts) > 1 and all(isinstance(part, np.ndarray) and part.size == 1 for part in parts):
             found.append(((*path, name), np.array([float(part.reshape(-1)[0]) for part in parts])))
             continue
         for k, part in enumerate(parts, 1):
-            _collect((*path[:-1], f"{path[-1]}({k})" if len(parts) > 1 else path[-1], name), part, found)
+            collect((*path[:-1], f"{path[-1]}({k})" if len(parts) > 1 else path[-1], name), part, found)
+
+
+def _texts(value: Any) -> list[str]:
+    """A text, or those of a cell array."""
+    if isinstance(value, tuple):
+        return [next(iter(_texts(cell)), "") for cell in value]
+    return [value if isinstance(value, str) else ""]
+
+
+def plain(value: np.ndarray) -> Any:
+    """A variable as scipy reads it, as :func:`collect` takes it."""
+    names = value.dtype.names or ()
+    if {"s0", "s1", "s2"} <= set(names):  # an object, as scipy shows it: name, system and class
+        called, _, kind = (value.reshape(-1)[0][key] for key in ("s0", "s1", "s2"))
+        return {"object": _decoded(kind), "called": _decoded(called)}
+    if names:
+        return [{name: plain(np.asarray(one[name])) for name in names} for one in value.reshape(-1)]
+    if value.dtype == object:
+        return tuple(plain(np.asarray(cell)) for cell in value.reshape(-1))
+    if value.dtype.kind == "U":
+        texts = tuple(str(text)[:LARGEST_TEXT].strip() for text in value.reshape(-1))
+        return texts if len(texts) > 1 else "".join(texts)
+    return value if value.dtype.kind in "fiub" else None
 
 
 def _decoded(value: Any) -> str:
     return value.decode(errors="replace") if isinstance(value, bytes) else str(value)
-
-
-def _texts(cells: Any) -> list[str]:
-    """The texts of a cell array, one level deep."""
-    found = []
-    for cell in np.asarray(cells, dtype=object).reshape(-1):
-        flat = np.asarray(cell).reshape(-1)
-        found.append(str(flat[0]).strip() if flat.size else "")
-    return found
 
 
 def unpacked(path: Path, most: int) -> int:
@@ -129,13 +137,18 @@ def main(source: str, out: str, most: str) -> None:
 
     If the file holds more than ``most`` bytes, only the number of bytes counted so far is written, to ``size.txt``.
     """
+    import scipy.io
+
     folder = Path(out)
     try:
         size = unpacked(Path(source), int(most))
         if size > int(most):
             (folder / SIZE).write_text(str(size), encoding="utf-8")
             return
-        content = load(Path(source))
+        content: list[Leaf] = []
+        for name, value in scipy.io.loadmat(source, chars_as_strings=True).items():
+            if not name.startswith("__") and isinstance(value, np.ndarray):
+                collect((name,), plain(value), content)
         for k, (_, value) in enumerate(content):
             if isinstance(value, np.ndarray):
                 np.save(folder / f"{k}.npy", value, allow_pickle=False)

@@ -14,8 +14,8 @@ from mffit.sweeps.matlab_apart import Leaf
 from mffit.sweeps.raw_table import Cells
 from mffit.sweeps.wide import RUN
 
-UNIT = ("unit", "units", "Unit", "Units")
-"""Names of a text next to a vector that states its unit."""
+NAMES, UNITS = ("name", "label"), ("unit", "units")
+"""Keys, in lower case, of the texts next to a vector that state its name and its unit."""
 
 
 class Content(NamedTuple):
@@ -34,32 +34,38 @@ class Content(NamedTuple):
 def content_of(leaves: Iterable[Leaf]) -> Content:
     """The content, by the last name of each leaf.
 
-    Where vectors share it, they are called by the structure that each is alone in, as in ``SA.values``; channels that several
-    structures have in common are runs; else a vector is called by all its names.
+    Where vectors share it, they are called by the text next to them that names each, else by the structure that each is alone
+    in, as in ``SA.values``; channels that several structures have in common are runs; else a vector is called by all its names.
     """
     found = list(leaves)
     vectors = {path: value for path, value in found if isinstance(value, np.ndarray)}
     texts = {path: value for path, value in found if isinstance(value, str)}
     others: dict[str, Mapping[str, Any]] = {
-        path[-1]: value for path, value in found if isinstance(value, dict)
+        value.get("called", path[-1]): value for path, value in found if isinstance(value, dict)
     }
     channels = next((value for value in others.values() if "name" in value), {})
     order = channels.get("name", [])
     repeated = Counter(path[-1] for path in vectors)
     inside = Counter(path[:-1] for path in vectors)
-    names, units = {}, dict(zip(order, channels.get("units", []), strict=False))
+    names: dict[tuple[str, ...], str] = {}
+    units = dict(zip(order, channels.get("units", []), strict=False))
+    stated = {(*path[:-1], path[-1].lower()): text for path, text in texts.items()}
     for path in vectors:
         alone = len(path) > 1 and inside[path[:-1]] == 1
-        names[path] = path[-1] if repeated[path[-1]] == 1 else path[-2] if alone else ".".join(path)
-        beside = [texts[(*path[:-1], name)] for name in UNIT if (*path[:-1], name) in texts]
-        if beside and alone:
-            units[names[path]] = beside[0]
+        called, unit = (
+            next((stated[at] for key in keys if alone and (at := (*path[:-1], key)) in stated), "")
+            for keys in (NAMES, UNITS)
+        )
+        own = called if called not in names.values() else ""
+        names[path] = path[-1] if repeated[path[-1]] == 1 else own or (path[-2] if alone else ".".join(path))
+        if unit:
+            units[names[path]] = unit
     return Content(
         vectors={name: vectors[path] for path, name in names.items()},
         runs=_runs(vectors),
         units=units,
         order=order,
-        about={path[-1]: text for path, text in texts.items() if path[-1] not in UNIT},
+        about={path[-1]: text for path, text in texts.items() if path[-1].lower() not in UNITS},
         others={name: value for name, value in others.items() if "name" not in value},
     )
 

@@ -23,6 +23,13 @@ STRUCTURES = {
     "array": {
         "run": [{name: values[3 * k : 3 * k + 3] for name, values in CHANNELS.items()} for k in (0, 1)]
     },
+    "recorder": {  # as a dSPACE recorder saves it: two arrays of structures, each with name and unit next to its vector
+        "rec1_001": {
+            "X": [{"Name": "ET", "Data": CHANNELS["ET"], "Unit": "N"}],
+            "Y": [{"Name": name, "Data": CHANNELS[name], "Unit": "N"} for name in ("SA", "FY")],
+            "Capture": {"Name": "Rig"},
+        }
+    },
     "rows": {"table": [{name: values[k : k + 1] for name, values in CHANNELS.items()} for k in range(6)]},
 }
 
@@ -50,9 +57,9 @@ def into_hdf5(group, name, value, file):
             into_hdf5(group.require_group(name), key, one, file)
     elif isinstance(value, list):
         for key in value[0]:
-            items = [
-                file.create_dataset(f"#refs#/{key}{k}", data=one[key][None]) for k, one in enumerate(value)
-            ]
+            for k, one in enumerate(value):
+                into_hdf5(file.require_group("#refs#"), f"{name}{key}{k}", one[key], file)
+            items = [file[f"#refs#/{name}{key}{k}"] for k in range(len(value))]
             references = group.require_group(name).create_dataset(key, (1, len(items)), h5py.ref_dtype)
             for k, item in enumerate(items):
                 references[0, k] = item.ref
@@ -80,7 +87,7 @@ def test_the_channels_within_structures_are_found(tmp_path, kind, version):
     assert set(raw.headings) - {"run"} == set(CHANNELS)
     for name, values in CHANNELS.items():
         np.testing.assert_array_equal(raw.column(name), values)
-    assert set(raw.units) == ({"N"} if kind == "signals" else {""})
+    assert set(raw.units) == ({"N"} if kind in ("signals", "recorder") else {""})
     if kind in ("runs", "array"):
         assert len(set(raw.column("run")[:3])) == len(set(raw.column("run")[3:])) == 1
         assert len(set(raw.column("run"))) == 2
