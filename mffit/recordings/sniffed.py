@@ -129,10 +129,8 @@ def sniff(
         *(f"{error} (this sheet is left out)" for error in refused),
         *(f"{each.recording} is left out: {each.why}" for each in bad),
     ]
-    two = [two_tyres.said(found.facts) for found in two_tyres.find(reading.points, config)][:1]
-    of_summaries += [
-        moment_reversed.said(found.facts) for found in moment_reversed.find(reading.points, config)
-    ]
+    two = [two_tyres.said(facts) for facts in two_tyres.find(reading.points, config)][:1]
+    of_summaries += [moment_reversed.said(facts) for facts in moment_reversed.find(reading.points, config)]
     two = two or [sentence for sentence in (two_specimens(summaries),) if sentence]
     reading = reading._replace(warnings=(*reading.warnings, *of_summaries, *two))
     return Sniffed(

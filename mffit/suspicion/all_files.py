@@ -13,7 +13,7 @@ from mffit.points import Points, levels
 from mffit.suspicion import constants
 from mffit.suspicion.groups import readings_of
 from mffit.suspicion.rereadings import REVERSALS
-from mffit.suspicion.rule import Finding, Outcome, rule
+from mffit.suspicion.rule import Facts, Outcome, rule
 from mffit.suspicion.slopes import (
     SIGNS,
     Signatures,
@@ -24,13 +24,14 @@ from mffit.suspicion.slopes import (
     pooled,
     signatures,
 )
+from tir.constants import NEGLIGIBLE_SHARE
 
 
 @rule(
     id="copied-sweep",
     sentence="holds exactly the readings of {first}; remove one of the two, or correct the one that was copied by mistake",
 )
-def copied_sweep(points: Points, config: Config) -> Iterator[Finding]:
+def copied_sweep(points: Points, config: Config) -> Iterator[Facts]:
     """Readings of a sweep that are all in another sweep; its points would count twice."""
     readings = readings_of(points)
     seen: dict[bytes, int] = {}
@@ -41,8 +42,8 @@ def copied_sweep(points: Points, config: Config) -> Iterator[Finding]:
         own = readings[rows]
         key = own[np.lexsort(own.T)].tobytes()
         if key in seen:
-            facts = {"first": points.sweep_names[seen[key]]}
-            yield Finding(facts, file=points.files[points.file[rows[0]]])
+            first = points.sweep_names[seen[key]]
+            yield {"file": points.files[points.file[rows[0]]], "first": first}
         seen[key] = int(k)
 
 
@@ -50,7 +51,7 @@ def copied_sweep(points: Points, config: Config) -> Iterator[Finding]:
     id="reversed-file",
     sentence="{what} {where}, against all the others: {cause}",
 )
-def reversed_file(points: Points, config: Config) -> Iterator[Finding]:
+def reversed_file(points: Points, config: Config) -> Iterator[Facts]:
     """Signs of the slopes, file by file, with the scatter of all files."""
     files = np.unique(points.file)
     if len(files) < 2:
@@ -58,7 +59,7 @@ def reversed_file(points: Points, config: Config) -> Iterator[Finding]:
     each = [signatures(points.select(points.file == index)) for index in files]
     broken = []
     for k, own in enumerate(_with_common_scatter(each)):
-        found = next(((sign, finding.column) for sign in SIGNS for finding in sign.find(own)), None)
+        found = next(((sign, facts["column"]) for sign in SIGNS for facts in sign.find(own)), None)
         if found is not None:
             broken.append((k, *found))
     if not broken:
@@ -78,7 +79,7 @@ def reversed_file(points: Points, config: Config) -> Iterator[Finding]:
     if len({mistake.column for mistake in causes}) == 1:
         column = causes[0].column
     facts = {"what": sign.sentence, "where": where, "cause": cause}
-    yield Finding(facts, file=points.files[files[k]], column=column)
+    yield {"file": points.files[files[k]], "column": column, **facts}
 
 
 def _with_common_scatter(each: list[Signatures]) -> list[Signatures]:
@@ -97,10 +98,10 @@ def _with_common_scatter(each: list[Signatures]) -> list[Signatures]:
     sentence="Mx_Nm has the wrong sign: it rises with gamma_deg in ISO axes, and falls with it on every tyre, whose load moves "
     "to the side to which it leans; write scale = -1 for Mx_Nm under [columns], if its axis points the other way",
 )
-def moment_reversed(points: Points, config: Config) -> Iterator[Finding]:
+def moment_reversed(points: Points, config: Config) -> Iterator[Facts]:
     """Slope of Mx over camber."""
     if overturning_slope(points).sign > 0:
-        yield Finding({})
+        yield {}
 
 
 @rule(
@@ -109,11 +110,11 @@ def moment_reversed(points: Points, config: Config) -> Iterator[Finding]:
     sentence="the force at alpha = gamma = 0 is {percent:.1f} % of the load along the turn slip, too little to measure turn "
     "slip; check the alignment of the sideslip axis",
 )
-def weak_turn_slip(points: Points, config: Config) -> Iterator[Finding]:
+def weak_turn_slip(points: Points, config: Config) -> Iterator[Facts]:
     """Fy per load at alpha = gamma = 0, outwards, mean of both directions."""
     outward = signatures(points).outward
-    if outward < constants.WEAK_TURN_SLIP_FORCE:
-        yield Finding({"percent": 100 * outward})
+    if outward < NEGLIGIBLE_SHARE:
+        yield {"percent": 100 * outward}
 
 
 @rule(
@@ -121,21 +122,17 @@ def weak_turn_slip(points: Points, config: Config) -> Iterator[Finding]:
     sentence='with moments = "{declared}", Mx_Nm changes by {lever:.2f} m times Fy_N, which is about the wheel\'s radius; about '
     'the contact point it hardly changes; the data agree with moments = "{other}"',
 )
-def other_moment_point(points: Points, config: Config) -> Iterator[Finding]:
+def other_moment_point(points: Points, config: Config) -> Iterator[Facts]:
     """Lever arm of Mx over Fy of the upright wheel, per unloaded radius."""
     used = np.isfinite(points.Fy) & (np.abs(points.gamma) <= UPRIGHT.rad)
     found = line(points.Fy, points.Mx, used)
-    lever = found.value
-    if not abs(lever) - found.clear > constants.LEVER_OF_OTHER_MOMENT_POINT * config.tyre.unloaded_radius:
+    least = abs(found.value) - found.clear
+    if not least > config.tyre.unloaded_radius - least:  # nearer to the radius than to zero
         return
-    declared = config.rig.moments
+    key, declared = "rig.moments", config.rig.moments
     other = {"contact": "wheel-centre", "wheel-centre": "contact"}[declared]
-    yield Finding(
-        {"declared": declared, "lever": lever, "other": other},
-        file=config.path,
-        line=config.line_of("rig.moments"),
-        key="rig.moments",
-    )
+    facts = {"declared": declared, "lever": found.value, "other": other}
+    yield {"file": config.path, "line": config.line_of(key), "key": key, **facts}
 
 
 @rule(
@@ -143,7 +140,7 @@ def other_moment_point(points: Points, config: Config) -> Iterator[Finding]:
     sentence="runs only from {smallest:.3g} to {largest:.3g} deg in ISO signs, and on a disc both signs are needed to separate "
     "turn slip; add the mirrored points",
 )
-def one_sided_on_disc(points: Points, config: Config) -> Iterator[Finding]:
+def one_sided_on_disc(points: Points, config: Config) -> Iterator[Facts]:
     """Signs of the angles on a disc, where turn slip is separated by mirror symmetry."""
     if not config.rig.on_disc:
         return
@@ -151,17 +148,17 @@ def one_sided_on_disc(points: Points, config: Config) -> Iterator[Finding]:
         degrees = np.degrees(values)
         if (degrees.max() > zero) != (degrees.min() < -zero):
             facts = {"smallest": degrees.min(), "largest": degrees.max()}
-            yield Finding(facts, file=config.path, column=column)
+            yield {"file": config.path, "column": column, **facts}
 
 
 @rule(
     id="no-zero-on-a-disc",
     sentence="no forward point has alpha_deg = 0 and gamma_deg = 0, where the turn-slip force is measured; add one per load",
 )
-def no_zero_on_disc(points: Points, config: Config) -> Iterator[Finding]:
+def no_zero_on_disc(points: Points, config: Config) -> Iterator[Facts]:
     """Forward points at alpha = gamma = 0 on a disc, where the turn-slip force is measured."""
     if config.rig.on_disc and not np.any(at_zero(points) & (points.direction > 0)):
-        yield Finding({}, file=config.path, column="alpha_deg")
+        yield {"file": config.path, "column": "alpha_deg"}
 
 
 class LevelsOfLoad(NamedTuple):
@@ -188,13 +185,13 @@ class LevelsOfLoad(NamedTuple):
     sentence="the nominal load of {nominal:g} N is {where} the measured loads of {lowest:.0f} to {highest:.0f} N, so that "
     "nothing was measured where the file is centred: check nominal_load (is a digit missing or too many?) and the unit of Fz_N",
 )
-def nominal_load_of_others(points: Points, config: Config) -> Iterator[Finding]:
+def nominal_load_of_others(points: Points, config: Config) -> Iterator[Facts]:
     """Nominal load over the highest level of load, and the lowest level over the nominal load."""
     found, nominal = LevelsOfLoad.of(points), config.tyre.nominal_load
     if found.below(nominal):
-        yield Finding({"nominal": nominal, "where": "above", **found._asdict()})
+        yield {"nominal": nominal, "where": "above", **found._asdict()}
     elif found.lowest / nominal > constants.BEYOND_NOMINAL:
-        yield Finding({"nominal": nominal, "where": "far below", **found._asdict()})
+        yield {"nominal": nominal, "where": "far below", **found._asdict()}
 
 
 @rule(
@@ -203,7 +200,7 @@ def nominal_load_of_others(points: Points, config: Config) -> Iterator[Finding]:
     sentence="T_degC is {degrees:.0f} degC in the middle{where}, and no tread stays as hot: if the readings are in degF, write "
     'T_degC = {{ column = "...", unit = "degF" }} under [columns]',
 )
-def hot_tread(points: Points, config: Config) -> Iterator[Finding]:
+def hot_tread(points: Points, config: Config) -> Iterator[Facts]:
     """Median of the temperatures of a file."""
     found = []
     for k in np.unique(points.file):
@@ -214,4 +211,4 @@ def hot_tread(points: Points, config: Config) -> Iterator[Finding]:
     if found:
         first, others = found[0][0], len(found) - 1
         where = f" in {first}" + f" and {others} more" * bool(others)
-        yield Finding({"degrees": found[0][1], "where": where})
+        yield {"degrees": found[0][1], "where": where}

@@ -11,17 +11,10 @@ SIDESLIP_OF_SLOPES = Real(
     "Sideslip up to which side force and aligning moment count as linear, and from which every tyre has a force.",
 )
 FEWEST = Count(4, "-", "Fewest readings, or sweeps, that show something: a slope, a copy, which one is odd.")
-WEAK_TURN_SLIP_FORCE = Real(0.01, "-", "A smaller turn-slip force over the load has no direction.")
-SMALLEST_CAMBER_THRUST = Real(
-    0.2,
+USUAL_CAMBER_THRUST = Series(
+    (0.2, 1.5),
     "-",
-    "Smallest usual Fy over Fz tan(gamma) at large camber, which is 0.3 to 1.2; a wrong frame removes 1.",
-)
-LARGEST_CAMBER_THRUST = Real(
-    1.5, "-", "Largest usual Fy over Fz tan(gamma) at large camber; a wrong frame adds 1."
-)
-LEVER_OF_OTHER_MOMENT_POINT = Real(
-    0.5, "-", "Lever arm over radius above which moments refer to another point."
+    "Usual Fy over Fz tan(gamma) at large camber, which is 0.3 to 1.2; a wrong frame adds or removes 1.",
 )
 
 # Another tyre
@@ -30,11 +23,6 @@ RADIUS_OF_ANOTHER_TYRE = Real(
     "-",
     "Relative difference of the radii of two files at one condition that means two tyres: a worn tread is 0.01 to 0.02 "
     "smaller, a warmer tyre 0.005 larger, and a repeated run differs by less.",
-)
-USUAL_RADIUS = Series(
-    (0.75, 1.0 + RADIUS_OF_ANOTHER_TYRE),
-    "-",
-    "Loaded or rolling over unloaded radius, outside which it is asked for: flat tyres are below.",
 )
 LARGEST_RADIUS = Real(
     1.1,
@@ -54,7 +42,6 @@ USUAL_PRESSURE = Series(
 )
 
 # Single files
-MUCH_NEARER = Real(0.2, "-", "Distance over another at which a force is the nearer one's without doubt.")
 STEEPEST_OVER_SIDESLIP = Real(
     120.0, "1/rad", "Slope over load that is asked for; radians read as degrees are 57 times as steep."
 )
@@ -72,15 +59,6 @@ LARGEST_MOMENT_ARM = Real(
     "-",
     "|Mz| over load and unloaded radius that no contact allows: it is shorter than the wheel, and the trail a part of it. Side "
     "forces over load exceed it at usual angles.",
-)
-LEAST_LOADED = Real(
-    0.1,
-    "-",
-    "Share of a file's largest load below which force over load says nothing: offsets of the load cell rule there.",
-)
-
-LAG_IN_DOUBT = Real(
-    0.1, "deg", "Shift of the angle by the lag of a usual tyre that is asked for: axes are aligned as well."
 )
 
 # Every sweep against all others; shares are errors of a prediction over the usual size of the channel
@@ -127,21 +105,8 @@ LARGEST_PUBLISHED_EPSILON = Real(
     "Largest camber reduction factor that is published: 0.7 of car tyres, slightly above 1 of truck tyres.",
     "Mottola and Massaro 2022, section 1",
 )
-LARGEST_FALL_LEFT = Real(
-    10.0,
-    "-",
-    "Fall of the sum of squares that a step still promises beyond which a search is stuck: the step moves numbers by three "
-    "standard uncertainties. Edges of the model, as play has, leave up to 2.2 at a minimum; a stuck search left 800.",
-    "151 searches against scipy, docs/recovery.md",
-)
-EXPLAINED_VARIANCE = Real(0.5, "-", "Share of a channel's variance that a trusted model explains.")
 MISFIT_OF_ANOTHER_UNIT = Real(
     0.1,
     "-",
     "Misfit over stated noise that only a noise stated in another unit explains: kN or percent are farther.",
-)
-
-# One sweep against a simulation; shares are median errors over the usual size of the channel
-MISREAD_OVER_WORST = Real(
-    2.0, "-", "Smallest error of a misread sweep over any other's: a wrong model misses several."
 )

@@ -16,8 +16,9 @@ from mffit.config import Config
 from mffit.constants import NAMED_IN_SENTENCE
 from mffit.points import Points
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding, Outcome, rule
+from mffit.suspicion.rule import Facts, Outcome, rule
 from mffit.suspicion.slopes import Signatures, contradictions, signatures
+from tir.constants import NEGLIGIBLE_SHARE
 from tir.conventions import FLIPPED
 
 
@@ -33,7 +34,7 @@ class Alternative(NamedTuple):
     id="declaration-contradicted",
     sentence="with {declared}, {wrong} in ISO signs, which no tyre does; {remedy}",
 )
-def contradicted(points: Points, config: Config) -> Iterator[Finding]:
+def contradicted(points: Points, config: Config) -> Iterator[Facts]:
     """What no tyre does, under the declared and under all other axes, frames and path centres."""
     found = signatures(points)
     wrong = contradictions(found)
@@ -43,7 +44,7 @@ def contradicted(points: Points, config: Config) -> Iterator[Finding]:
     def fits(other: Alternative) -> bool:
         """Whether the data agree with another declaration and show a clear camber response under it."""
         seen = signatures(other.points())
-        return not contradictions(seen) and not seen.camber.value > -constants.SMALLEST_CAMBER_THRUST
+        return not contradictions(seen) and not seen.camber.value > -constants.USUAL_CAMBER_THRUST[0]
 
     fitting = [other for other in _alternatives(points, config) if fits(other)]
     fitting = fitting or [other for other in _pairs(points, config) if fits(other)]
@@ -62,12 +63,13 @@ def contradicted(points: Points, config: Config) -> Iterator[Finding]:
         "wrong": " and ".join(wrong[:shown]) + (", among others," if len(wrong) > shown else ""),
         "remedy": remedy + _or_misaligned(points, found, len(wrong)),
     }
-    yield Finding(facts, file=config.path, line=config.line_of(key), key=key)
+    yield {"file": config.path, "line": config.line_of(key), "key": key, **facts}
 
 
 def _unusual_thrust(found: Signatures) -> bool:
     """Whether the camber thrust lies outside what is usual; False where large camber was not run on both sides."""
-    return found.thrust < constants.SMALLEST_CAMBER_THRUST or found.thrust > constants.LARGEST_CAMBER_THRUST
+    least, most = constants.USUAL_CAMBER_THRUST
+    return found.thrust < least or found.thrust > most
 
 
 @rule(
@@ -76,7 +78,7 @@ def _unusual_thrust(found: Signatures) -> bool:
     sentence="Fy_N at large gamma_deg is {thrust:.2f} Fz tan(gamma), which is rare ({least} to {most} is usual){instead}; check "
     "force_frame and the unit of gamma_deg",
 )
-def other_frame(points: Points, config: Config) -> Iterator[Finding]:
+def other_frame(points: Points, config: Config) -> Iterator[Facts]:
     """-Fy over Fz tan(gamma) at large camber of both signs, also as it would be in the other frame."""
     found = signatures(points)
     if not _unusual_thrust(found):
@@ -87,8 +89,8 @@ def other_frame(points: Points, config: Config) -> Iterator[Finding]:
         if other.key == "rig.force_frame" and not contradictions(seen) and not _unusual_thrust(seen):
             instead = f", and {seen.thrust:.2f} with {other.remedy}"
             break
-    least, most = constants.SMALLEST_CAMBER_THRUST, constants.LARGEST_CAMBER_THRUST
-    yield Finding({"thrust": found.thrust, "least": least, "most": most, "instead": instead})
+    least, most = constants.USUAL_CAMBER_THRUST
+    yield {"thrust": found.thrust, "least": least, "most": most, "instead": instead}
 
 
 def _or_misaligned(points: Points, found: Signatures, contradictions: int) -> str:
@@ -96,7 +98,7 @@ def _or_misaligned(points: Points, found: Signatures, contradictions: int) -> st
 
     It is excluded by a second contradiction or by backward runs.
     """
-    inward = found.outward < -constants.WEAK_TURN_SLIP_FORCE
+    inward = found.outward < -NEGLIGIBLE_SHARE
     if (
         not inward
         or contradictions > 1

@@ -60,7 +60,7 @@ def misread_sweep(
 ) -> Iterator[Misread]:
     """Median error of the simulation over the usual size of the channel, with each known mistake undone.
 
-    A sweep is found if its error is twice that of any other sweep and a known mistake explains it. If this holds for several
+    A sweep is found if its error clearly exceeds that of any other and a known mistake explains it. If this holds for several
     sweeps, the model or the rig is at fault. A small error counts as a wrong label only if sound sweeps of the same kind at or
     around that label confirm the model there. ``signs`` convert from ISO-W to the rig's axes.
     """
@@ -82,7 +82,7 @@ def misread_sweep(
         beyond = {
             name: error
             for name, error in before.items()
-            if error > constants.MISREAD_OVER_WORST * max((o[name] for o in others if name in o), default=0.0)
+            if error > constants.DISTRUSTED_MISFIT * max((o[name] for o in others if name in o), default=0.0)
         }
         gross = {name: error for name, error in beyond.items() if error > constants.GROSS_SHARE}
         if gross:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
@@ -15,9 +14,10 @@ from mffit.config.lines import ranges_text
 from mffit.points import Points, levels
 from mffit.quantities import CONDITIONS
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding, Outcome, rule
+from mffit.suspicion.rule import Facts, Outcome, rule
 from mffit.suspicion.slopes import at_zero
 from mffit.sweeps.about import names_tyre
+from tir.constants import EFFECTIVE_RADIUS_RANGE
 from tir.errors import some
 
 
@@ -42,7 +42,7 @@ RADII = (
     of_all=True,
     sentence="names {n} tyres, {names}, and a property file describes one; make a project of each: {cure}",
 )
-def named_tyres(points: Points, config: Config) -> Iterator[Finding]:
+def named_tyres(points: Points, config: Config) -> Iterator[Facts]:
     """Names of tyres in a column of the readings."""
     for heading in filter(names_tyre, map(str, points.table)):
         table = pd.DataFrame(
@@ -64,7 +64,7 @@ def named_tyres(points: Points, config: Config) -> Iterator[Finding]:
             "names": some([f'"{name}"' for name in table.name.unique()]),
             "cure": _how_to_keep(kept, table),
         }
-        yield Finding(facts, file=other.file, line=int(other.line), column=heading)
+        yield {"file": other.file, "line": int(other.line), "column": heading, **facts}
         return
 
 
@@ -96,7 +96,7 @@ def _how_to_keep(kept: str, table: pd.DataFrame) -> str:
     sentence="{first} and {second} are of two tyres: the {words} at {load}, upright, is {a:.0f} against {b:.0f} mm; "
     "make a project of each",
 )
-def two_tyres(points: Points, config: Config) -> Iterator[Finding]:
+def two_tyres(points: Points, config: Config) -> Iterator[Facts]:
     """Radii of two files at one load, pressure and speed, upright and rolling freely; worn or warm tyres differ by less."""
     upright = points.select(_rolls_upright(points))
     for radius in RADII:
@@ -117,50 +117,38 @@ def two_tyres(points: Points, config: Config) -> Iterator[Finding]:
                 "a": 1e3 * best.median_a,
                 "b": 1e3 * best.median_b,
             }
-            yield Finding(facts, file=config.path)
+            yield {"file": config.path, **facts}
             return
 
 
 @rule(
     id="other-radius",
-    sentence="the {words} of the readings is {radius:.4g} m, {ratio:.2f} times the unloaded radius of {declared:g} m, which no "
-    "wheel has; correct unloaded_radius, or the unit of {column}",
+    outcome=Outcome.GRADED,
+    sentence="the {words} of the readings is {radius:.4g} m, {ratio:.2f} times the unloaded radius of {declared:g} m, which "
+    "{judged} unloaded_radius, or the unit of {of_column}",
 )
-def other_radius(points: Points, config: Config) -> Iterator[Finding]:
-    """Radii of the wheel that rolls freely and upright, outside the rim and the unloaded radius."""
-    rim = (config.tyre.rim_radius or 0.0) / config.tyre.unloaded_radius
-    key = "tyre.unloaded_radius"
-    for facts in _radii_outside(points, config, rim, constants.LARGEST_RADIUS):
-        yield Finding(facts, file=config.path, line=config.line_of(key), key=key)
-
-
-@rule(
-    id="unusual-radius",
-    outcome=Outcome.WARNED,
-    sentence="the {words} of the readings is {radius:.4g} m, {ratio:.2f} times the unloaded radius of {declared:g} m, which is "
-    "rare: check unloaded_radius, and the unit of {column}",
-)
-def unusual_radius(points: Points, config: Config) -> Iterator[Finding]:
-    """The same over the unloaded radius."""
-    yield from map(Finding, _radii_outside(points, config, *constants.USUAL_RADIUS))
-
-
-def _radii_outside(points: Points, config: Config, least: float, most: float) -> Iterator[dict[str, Any]]:
-    """The medians of the radii outside limits, which are ratios to the unloaded radius."""
+def other_radius(points: Points, config: Config) -> Iterator[Facts]:
+    """Median radii of the wheel that rolls freely and upright, over the unloaded radius; refused below the rim and above what
+    growth with speed explains.
+    """
     upright = points.select(_rolls_upright(points))
-    declared = config.tyre.unloaded_radius
+    declared, key = config.tyre.unloaded_radius, "tyre.unloaded_radius"
+    rim = (config.tyre.rim_radius or 0.0) / declared
     for radius in RADII:
         values = radius.of(upright)
         values = values[np.isfinite(values)]
-        middle = float(np.median(values)) if len(values) else math.nan
-        if middle < least * declared or middle > most * declared:
-            yield {
-                "words": radius.words,
-                "radius": middle,
-                "ratio": middle / declared,
-                "declared": declared,
-                "column": radius.column,
-            }
+        ratio = float(np.median(values)) / declared if len(values) else 1.0
+        usual, possible = (
+            least <= ratio <= most
+            for least, most in (EFFECTIVE_RADIUS_RANGE, (rim, constants.LARGEST_RADIUS))
+        )
+        if not (usual and possible):
+            judged = "is rare: check" if possible else "no wheel has; correct"
+            facts = {"words": radius.words, "radius": ratio * declared, "ratio": ratio, "declared": declared}
+            facts |= {"of_column": radius.column, "judged": judged, "asked": possible}
+            yield (
+                facts if possible else {**facts, "file": config.path, "line": config.line_of(key), "key": key}
+            )
 
 
 def _rolls_upright(points: Points) -> np.ndarray:

@@ -24,7 +24,7 @@ from mffit.scatter import rms, usual_size
 from mffit.suspicion import constants
 from mffit.suspicion.groups import Group, confirmed_by_others, groups
 from mffit.suspicion.rereadings import MISTAKES, Away, Errors, Mistake, explaining, explanation, moved
-from mffit.suspicion.rule import Finding, Outcome, When, rule
+from mffit.suspicion.rule import Facts, Outcome, When, rule
 from tir.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
@@ -125,8 +125,8 @@ keys(Doubt, "sweep file channel rms ratio share looks_like=looks?")
 def after_the_fit(campaign: JudgedSweeps) -> tuple[Doubt, ...]:
     """Sweeps that contradict the others; raises InputError for a sweep whose error is beyond plausibility."""
     seen = doubts(campaign)
-    for finding in contradicting_sweep.find(seen):
-        raise contradicting_sweep.refusal(finding)
+    for facts in contradicting_sweep.find(seen):
+        raise contradicting_sweep.refusal(facts)
     return tuple(doubtful_sweep.find(seen))
 
 
@@ -159,7 +159,7 @@ def doubts(campaign: JudgedSweeps) -> tuple[Doubt, ...]:
     sentence="contradicts all other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least {percent:.0f} % "
     "of its usual size{condition}{looks}",
 )
-def contradicting_sweep(seen: Sequence[Doubt]) -> Iterator[Finding]:
+def contradicting_sweep(seen: Sequence[Doubt]) -> Iterator[Facts]:
     """Error of the prediction from all other sweeps, as it is and with each known mistake undone; the worst sweep is found.
 
     Where no other sweep was measured at the load, the camber or the pressure, the formula alone contradicts: then only a unit is
@@ -187,9 +187,8 @@ def contradicting_sweep(seen: Sequence[Doubt]) -> Iterator[Finding]:
         )
     condition = "" if worst.whole else f" ({worst.sweep})"
     column = worst.mistake.column if worst.mistake else None
-    yield Finding(
-        {**worst.gross.facts, "condition": condition, "looks": looks}, file=worst.file, column=column
-    )
+    facts = {**worst.gross.facts, "condition": condition, "looks": looks}
+    yield {"file": worst.file, "column": column, **facts}
 
 
 @rule(

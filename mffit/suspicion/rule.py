@@ -1,4 +1,4 @@
-"""Records of a rule of suspicion and of its findings."""
+"""Record of a rule of suspicion, and the decorators that make one from a finder."""
 
 from __future__ import annotations
 
@@ -6,14 +6,23 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import wraps
-from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from mffit.config import Config
 from mffit.errors import InputError
 from mffit.points import Points
+
+Facts = Mapping[str, Any]
+"""One case in which a rule applies: the values in its sentence.
+
+Before the fit, ``file``, ``line``, ``column`` (heading) and ``key`` (of ``tyre.toml``) give its place. ``asked`` marks a case of
+a graded rule that is unusual but contradicts nothing.
+"""
+PLACE = ("file", "line", "column", "key")
+Find = Callable[..., Iterable[Any]]
+"""Finder of a rule. Before the fit its arguments are points and configuration; later they depend on the module."""
 
 
 class When(StrEnum):
@@ -33,22 +42,10 @@ class Outcome(StrEnum):
     CONTRADICTION = "the declaration is contradicted"
     WARNED = "a warning"
     DISTRUSTED = "the result is not to be trusted"
-    GRADED = "the result is not to be trusted, or a warning where chance is unlikely but not excluded"
+    GRADED = (
+        "as refused (before the fit) or distrusted if the data contradict it; a warning if it is only unusual"
+    )
     LEFT_OUT = "left out, with a warning"
-
-
-class Finding(NamedTuple):
-    """One case in which a rule applies."""
-
-    facts: Mapping[str, Any]  #: values that fill the rule's sentence
-    file: str | Path | None = None
-    line: int | None = None
-    column: str | None = None
-    key: str | None = None  #: key of ``tyre.toml``
-
-
-Find = Callable[..., Iterable[Any]]
-"""Finder of a rule. Before the fit its arguments are points and configuration; later they depend on the module."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,20 +56,23 @@ class Rule:
     when: When = When.BEFORE
     looks_at: str  #: the compared quantities, in words
     outcome: Outcome = Outcome.REFUSED
-    sentence: str  #: template, filled with the facts of a finding
+    sentence: str  #: template, filled with the facts of a case
     find: Find
     of_all: bool = (
         False  #: before the fit, whether points count that are otherwise not judged, such as driven ones
     )
 
-    def said(self, facts: Mapping[str, Any]) -> str:
-        """The sentence about one finding."""
+    def said(self, facts: Facts) -> str:
+        """The sentence about one case."""
         return self.sentence.format(**facts)
 
-    def refusal(self, finding: Finding) -> InputError:
-        """The error that ends the command."""
-        said = self.said(finding.facts)
-        return InputError(said, file=finding.file, line=finding.line, column=finding.column, key=finding.key)
+    def only_asks(self, facts: Facts) -> bool:
+        """Whether a case is a question to the engineer, not a verdict."""
+        return bool(facts.get("asked", self.outcome is Outcome.WARNED))
+
+    def refusal(self, facts: Facts) -> InputError:
+        """The error that ends the command; its text, with the place, is also that of a warning."""
+        return InputError(self.said(facts), **{name: facts[name] for name in PLACE if name in facts})
 
 
 def rule(**told: Any) -> Callable[[Find], Rule]:
@@ -80,16 +80,13 @@ def rule(**told: Any) -> Callable[[Find], Rule]:
     return lambda find: Rule(looks_at=(find.__doc__ or "").partition("\n")[0].rstrip("."), find=find, **told)
 
 
-def rule_of_files(**told: Any) -> Callable[[Find], Rule]:
-    """Decorator that turns a finder for the points of one file into a rule for all files."""
+def each_file(find: Find) -> Find:
+    """Decorator that turns a finder for the points of one file into a finder for all files."""
 
-    def of(find: Find) -> Rule:
-        @wraps(find)
-        def everywhere(points: Points, config: Config) -> Iterator[Finding]:
-            for k in np.unique(points.file):
-                for finding in find(points.select(points.file == k), config):
-                    yield finding._replace(file=points.files[k])
+    @wraps(find)
+    def everywhere(points: Points, config: Config) -> Iterator[Facts]:
+        for k in np.unique(points.file):
+            for facts in find(points.select(points.file == k), config):
+                yield {"file": points.files[k], **facts}
 
-        return rule(**told)(everywhere)
-
-    return of
+    return everywhere

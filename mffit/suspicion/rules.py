@@ -38,14 +38,10 @@ RULES: tuple[Rule, ...] = (
     single_files.repeated_rows,
     other_tyre.two_tyres,
     other_tyre.other_radius,
-    other_tyre.unusual_radius,
     single_files.dead_channel,
     single_files.lone_load,
     single_files.wild_force,
-    single_files.impossible_file,
-    single_files.unusual_load,
     single_files.unusual_file,
-    single_files.low_friction,
     *slopes.NO_TYRE,
     declarations.contradicted,
     declarations.other_frame,
@@ -81,8 +77,9 @@ def before_the_fit(points: Points, config: Config) -> tuple[str, ...]:
         for rule in RULES:
             if rule.when is not When.BEFORE or rule.outcome is Outcome.CONTRADICTION:
                 continue
-            for finding in rule.find(points if rule.of_all else judged, config):
-                if rule.outcome is Outcome.REFUSED:
-                    raise rule.refusal(finding)
-                warnings.append(rule.said(finding.facts))
+            for facts in rule.find(points if rule.of_all else judged, config):
+                found = rule.refusal(facts)
+                if not rule.only_asks(facts):
+                    raise found
+                warnings.append(str(found))
     return tuple(warnings)

@@ -1,7 +1,7 @@
 """Checks of single files: values that are unusual or impossible, and the reading under which the file would be plausible.
 
-Numbers in a wrong unit can be plausible one by one and impossible in combination. Unusual values are refused if a known mistake
-explains them; otherwise they are asked for.
+Numbers in a wrong unit can be plausible one by one and impossible in combination. Unusual values are refused if physics excludes
+them or a known mistake explains them; otherwise they are asked for.
 """
 
 from __future__ import annotations
@@ -12,18 +12,20 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import STRAIGHT, UPRIGHT
+from mffit.constants import EXPLAINED_SHARE, STRAIGHT, UPRIGHT
 from mffit.points import Points
+from mffit.points.constants import UNLOADED
 from mffit.suspicion import constants
 from mffit.suspicion.groups import readings_of
-from mffit.suspicion.rereadings import MISTAKES, Mistake
-from mffit.suspicion.rule import Finding, Outcome, rule_of_files
+from mffit.suspicion.rereadings import MISTAKES
+from mffit.suspicion.rule import Facts, Outcome, each_file, rule
 from mffit.suspicion.slopes import STILL, slope
 from tir.constants import CREDIBLE_FRICTION
 
-WEAKEST_CAMBER_IN_RADIANS = float(np.degrees(constants.SMALLEST_CAMBER_THRUST))
+WEAKEST_CAMBER_THRUST = constants.USUAL_CAMBER_THRUST[0]
+WEAKEST_CAMBER_IN_RADIANS = float(np.degrees(WEAKEST_CAMBER_THRUST))
 """Slope of Fy/Fz over camber [1/rad] of the tyre with the weakest camber force, if radians are read as degrees."""
-CAMBER_THAT_SHOWS_FORCE = float(constants.SMALLEST_FRICTION / constants.SMALLEST_CAMBER_THRUST)
+CAMBER_THAT_SHOWS_FORCE = constants.SMALLEST_FRICTION / WEAKEST_CAMBER_THRUST
 """Camber [rad] from which every tyre has a visible side force."""
 STILL_IN_RADIANS = {angle: float(np.radians(still)) for angle, still in STILL.items()}
 """Range of an angle that stands still, if radians are read as degrees."""
@@ -31,8 +33,9 @@ AS_READ = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
 """Signs of the rig's axes; these checks use sizes only, so all are +1."""
 
 
-@rule_of_files(id="dead-channel", sentence="is {reading:g} in every row, so the channel was dead; {remedy}")
-def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
+@rule(id="dead-channel", sentence="is {reading:g} in every row, so the channel was dead; {remedy}")
+@each_file
+def dead_channel(part: Points, config: Config) -> Iterator[Facts]:
     """Mz and Fy that are the same in every row although the angles change, and a speed of 0, at which there is no slip."""
     if len(part) < constants.FEWEST or np.ptp(part.alpha) + np.ptp(part.gamma) == 0.0:
         return
@@ -42,94 +45,79 @@ def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
         ("V_mps", part.V, "leave the column out of this file"),
     ):
         if np.all(reading == reading[0]) and not (column == "V_mps" and reading[0] > 0.0):
-            yield Finding({"reading": reading[0], "remedy": remedy}, column=column)
+            yield {"column": column, "reading": reading[0], "remedy": remedy}
 
 
-@rule_of_files(
+@rule(
     id="repeated-rows",
     sentence="holds {count} rows a second time, with the same readings; remove the copies, as they would count as more readings",
 )
-def repeated_rows(part: Points, config: Config) -> Iterator[Finding]:
+@each_file
+def repeated_rows(part: Points, config: Config) -> Iterator[Facts]:
     """Rows with the readings of another row of the file, if they are half of it."""
     first = np.unique(readings_of(part), axis=0, return_index=True)[1]
     copies = np.setdiff1d(np.arange(len(part)), first)
     if len(part) >= constants.FEWEST and 2 * len(copies) >= len(part) and np.ptp(part.Fy) > 0.0:
-        yield Finding({"count": len(copies)}, line=int(part.line[copies[0]]) or None)
+        yield {"line": _line(part, copies[0]), "count": len(copies)}
 
 
-class LoneLoad(NamedTuple):
-    """A load far above all others of its file."""
-
-    row: int
-    others: float  #: the largest of the others [N]
-    contradicted: bool  #: whether the side force is that of the others at this angle
+def _line(part: Points, row: int) -> int | None:
+    """Line of a point in its file; None if it is unknown."""
+    return int(part.line[row]) or None
 
 
-def _lone_load(part: Points) -> LoneLoad | None:
-    if len(part) < constants.FEWEST:
-        return None
-    row, others = int(np.argmax(part.Fz)), float(np.sort(part.Fz)[-2])
+@rule(
+    id="lone-load",
+    outcome=Outcome.GRADED,
+    sentence="{load:.6g} N is far above all other loads of the file, which are at most {others:.6g} N{seen} correct or remove "
+    "the row",
+)
+@each_file
+def lone_load(part: Points, config: Config) -> Iterator[Facts]:
+    """Largest load over all others of the file; refused if the side force hardly differs from that at the nearest angles."""
+    row = int(np.argmax(part.Fz))
+    others = float(np.sort(part.Fz)[-2]) if len(part) >= constants.FEWEST else np.inf
     if not part.Fz[row] > constants.BEYOND_NOMINAL * others:
-        return None
+        return
     swept = part.alpha if np.ptp(part.alpha) > np.ptp(part.gamma) else part.gamma
     in_order = np.setdiff1d(np.argsort(swept), row, assume_unique=True)
     between = [np.interp(swept[row], swept[in_order], y[in_order]) for y in (part.Fy, part.Fy / part.Fz)]
     as_others = abs(part.Fy[row] - between[0])
     as_loaded = abs(part.Fy[row] - between[1] * part.Fz[row])
-    return LoneLoad(row, others, bool(as_others < constants.MUCH_NEARER * as_loaded))
+    asked = bool(as_others >= EXPLAINED_SHARE * as_loaded)
+    seen = ": if it is a wild reading," if asked else ", and its side force is that of the others;"
+    facts = {"load": part.Fz[row], "others": others, "seen": seen, "asked": asked}
+    yield {"line": _line(part, row), "column": "Fz_N", **facts}
 
 
-@rule_of_files(
-    id="lone-load",
-    sentence="{load:.6g} N is far above all other loads of the file, which are at most {others:.6g} N, and its side force is "
-    "that of the others; correct or remove the row",
-)
-def lone_load(part: Points, config: Config) -> Iterator[Finding]:
-    """Largest load over all others of the file, if the side force hardly differs from that at the nearest angles."""
-    found = _lone_load(part)
-    if found is not None and found.contradicted:
-        facts = {"load": part.Fz[found.row], "others": found.others}
-        yield Finding(facts, line=int(part.line[found.row]) or None, column="Fz_N")
-
-
-@rule_of_files(
-    id="unusual-load",
-    outcome=Outcome.WARNED,
-    sentence="{load:.6g} N is far above all other loads of {file}, which are at most {others:.6g} N: if it is a wild reading, "
-    "correct or remove the row",
-)
-def unusual_load(part: Points, config: Config) -> Iterator[Finding]:
-    """The same, if the side force grows with it."""
-    found = _lone_load(part)
-    if found is not None and not found.contradicted:
-        facts = {"load": part.Fz[found.row], "others": found.others, "file": part.files[part.file[0]]}
-        yield Finding(facts)
-
-
-@rule_of_files(
+@rule(
     id="wild-force",
     sentence="{force:.6g} N is {friction:.0f} times the load, which no tyre reaches; correct or remove the row",
 )
-def wild_force(part: Points, config: Config) -> Iterator[Finding]:
+@each_file
+def wild_force(part: Points, config: Config) -> Iterator[Facts]:
     """Fy per load of a few loaded rows."""
     friction = np.where(_loaded(part), np.abs(part.Fy) / part.Fz, 0.0)
     if 0 < np.sum(friction > CREDIBLE_FRICTION) < constants.FEWEST:
         row = int(np.argmax(friction))
-        facts = {"force": part.Fy[row], "friction": friction[row]}
-        yield Finding(facts, line=int(part.line[row]) or None, column="Fy_N")
+        yield {"line": _line(part, row), "column": "Fy_N", "force": part.Fy[row], "friction": friction[row]}
 
 
 def _loaded(part: Points) -> np.ndarray:
-    """Mask (n,) of the rows whose force over load says something."""
-    return np.asarray(part.Fz >= constants.LEAST_LOADED * np.max(part.Fz, initial=0.0))
+    """Mask (n,) of the rows with enough load for the ratio of force to load to mean something."""
+    return np.asarray(part.Fz >= UNLOADED * np.max(part.Fz, initial=0.0))
+
+
+UNEXPLAINED = "no single unit or exchanged heading explains it: check the columns and units of this file"
 
 
 class Unusual(NamedTuple):
-    """A value outside what tyres usually have."""
+    """A value outside the usual range of tyres."""
 
     column: str
     said: str  #: words that follow the name of the column
     impossible: bool = False  #: whether physics excludes it
+    looks: str = UNEXPLAINED  #: what to do if no known mistake explains it
 
 
 def _steep(part: Points, config: Config) -> Iterator[Unusual]:
@@ -184,8 +172,8 @@ def _weak(part: Points, config: Config) -> Iterator[Unusual]:
 
 def _pressure(part: Points, config: Config) -> Iterator[Unusual]:
     nominal, pressure = 1e3 * config.tyre.nominal_pressure, float(np.median(part.p))
-    lowest, highest = constants.USUAL_PRESSURE
-    if not lowest * nominal <= pressure <= highest * nominal:
+    least, most = constants.USUAL_PRESSURE
+    if not least <= pressure / nominal <= most:
         said = f"is {pressure / 1e3:.3g} kPa, far from the nominal {nominal / 1e3:.3g} kPa"
         yield Unusual("p_kPa", said)
 
@@ -196,9 +184,12 @@ def _slippery(part: Points, config: Config) -> Iterator[Unusual]:
         friction = np.max(np.abs(part.Fy[far]) / part.Fz[far])
         if friction < constants.USUAL_FRICTION:
             largest = np.degrees(np.max(np.abs(part.alpha[far])))
-            yield Unusual(
-                "Fy_N", f"reaches {friction:.2g} times the load up to {largest:.3g} deg of sideslip"
+            said = f"reaches {friction:.2g} times the load up to {largest:.3g} deg of sideslip"
+            looks = (
+                "unless the road was wet or of ice, check the units of Fy_N and Fz_N (a load in lbf, kgf or kN and a force in "
+                "another unit look like this)"
             )
+            yield Unusual("Fy_N", said, looks=looks)
 
 
 Test = Callable[[Points, Config], Iterator[Unusual]]
@@ -212,55 +203,34 @@ def unusual(part: Points, config: Config, tests: tuple[Test, ...] = TESTS) -> li
     return [found for test in tests for found in test(part, config)]
 
 
-def _explained(found: list[Unusual], part: Points, config: Config) -> tuple[Unusual, list[Mistake]] | None:
-    """What known mistakes explain, and these: without one of them the least is unusual, and nothing that was usual before."""
-    before, best = {one.column for one in found}, None
-    for mistake in (one for one in MISTAKES if found and one.beyond_doubt):
+@rule(id="unusual-file", outcome=Outcome.GRADED, sentence="{said}; {looks}")
+@each_file
+def unusual_file(part: Points, config: Config) -> Iterator[Facts]:
+    """Pressure over the nominal one, slopes of Fy over the angles, Fy, Mz and Mx over load; refused if physics excludes it or a
+    known mistake explains it.
+    """
+    found = unusual(part, config)
+    if found:
+        yield from _explained(found, part, config)
+    for column, said, impossible, looks in found or _slippery(part, config):
+        yield {"column": column, "said": said, "looks": looks, "asked": not impossible}
+
+
+def _explained(found: list[Unusual], part: Points, config: Config) -> Iterator[Facts]:
+    """The known mistakes without which the least is unusual, and nothing that was usual before; several only if they are units
+    of one column.
+    """
+    before, what, mistakes = {one.column for one in found}, found[0], []
+    for mistake in (one for one in MISTAKES if one.beyond_doubt):
         left = {one.column for one in unusual(mistake.undone(part, AS_READ), config, ASKED)}
         if left < before:
-            before = left
-            best = next(one for one in found if one.column not in left), [mistake]
-        elif best and left == before and mistake.column == best[1][0].column and best[1][0].units:
-            best[1].append(mistake)
-    return best
-
-
-@rule_of_files(id="impossible-file", sentence="{said}; {looks}")
-def impossible_file(part: Points, config: Config) -> Iterator[Finding]:
-    """Pressure over the nominal one, slopes of Fy over the angles, Fy, Mz and Mx over load; as read and without each mistake."""
-    found = unusual(part, config)
-    if explained := _explained(found, part, config):
-        (column, said, _), (mistake, *others) = explained
-        said = said if column == mistake.column else f"{column} {said}"
+            before, mistakes = left, [mistake]
+            what = next(one for one in found if one.column not in left)
+        elif mistakes and left == before and mistake.column == mistakes[0].column and mistakes[0].units:
+            mistakes.append(mistake)
+    if mistakes:
+        first, *others = mistakes
+        said = what.said if what.column == first.column else f"{what.column} {what.said}"
         also = "".join(f" or {other.units[0]}" for other in others if other.units)
-        looks = f"it looks like {mistake.looks}{also}: {mistake.remedy}"
-        looks += ", with the true unit" * bool(also)
-        yield Finding({"said": said, "looks": looks}, column=mistake.column)
-    for column, said, impossible in found:
-        if impossible:
-            yield Finding({"said": said, "looks": UNEXPLAINED}, column=column)
-
-
-UNEXPLAINED = "no single unit or exchanged heading explains it: check the columns and units of this file"
-
-
-@rule_of_files(id="unusual-file", outcome=Outcome.WARNED, sentence="{column} of {file} {said}; {looks}")
-def unusual_file(part: Points, config: Config) -> Iterator[Finding]:
-    """The same, where neither physics nor a known mistake decides."""
-    for column, said, _ in unusual(part, config):
-        yield Finding(
-            {"column": column, "said": said, "looks": UNEXPLAINED, "file": part.files[part.file[0]]}
-        )
-
-
-@rule_of_files(
-    id="low-friction",
-    outcome=Outcome.WARNED,
-    sentence="{column} of {file} {said}: unless the road was wet or of ice, check the units of Fy_N and Fz_N (a load in lbf, "
-    "kgf or kN and a force in another unit look like this)",
-)
-def low_friction(part: Points, config: Config) -> Iterator[Finding]:
-    """Fy per load at large sideslip, where nothing else is unusual."""
-    if not unusual(part, config):
-        for column, said, _ in _slippery(part, config):
-            yield Finding({"column": column, "said": said, "file": part.files[part.file[0]]})
+        looks = f"it looks like {first.looks}{also}: {first.remedy}" + ", with the true unit" * bool(also)
+        yield {"column": first.column, "said": said, "looks": looks}

@@ -17,7 +17,8 @@ from scipy.special import stdtrit
 from mffit.constants import CAMBER_OF_SLOPES, FALSE_ALARM, STRAIGHT, UPRIGHT
 from mffit.points import Points, levels
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding, Outcome, Rule, rule
+from mffit.suspicion.rule import Facts, Outcome, Rule, rule
+from tir.constants import NEGLIGIBLE_SHARE
 
 
 class SlopeWithError(NamedTuple):
@@ -173,16 +174,16 @@ def _thrust(points: Points) -> float:
 def _sign(slope: str, sign: int, column: str, told: str, looks_at: str, id: str) -> Rule:
     """The rule that no tyre has a slope of this sign."""
 
-    def find(found: Signatures) -> Iterator[Finding]:
+    def find(found: Signatures) -> Iterator[Facts]:
         if getattr(found, slope).sign == sign:
-            yield Finding({}, column=column)
+            yield {"column": column}
 
     return Rule(id=id, looks_at=looks_at, outcome=Outcome.CONTRADICTION, sentence=told, find=find)
 
 
 def contradictions(found: Signatures) -> list[str]:
     """Contradictions of the signatures to every tyre, as clauses; empty for plausible signatures."""
-    return [rule.said(finding.facts) for rule in NO_TYRE for finding in rule.find(found)]
+    return [rule.said(facts) for rule in NO_TYRE for facts in rule.find(found)]
 
 
 @rule(
@@ -190,10 +191,10 @@ def contradictions(found: Signatures) -> list[str]:
     outcome=Outcome.CONTRADICTION,
     sentence="Fy_N at alpha = gamma = 0 points towards the declared centre of the path",
 )
-def turn_slip_inwards(found: Signatures) -> Iterator[Finding]:
+def turn_slip_inwards(found: Signatures) -> Iterator[Facts]:
     """Fy per load at alpha = gamma = 0, outwards, mean of both directions."""
-    if found.outward < -constants.WEAK_TURN_SLIP_FORCE:
-        yield Finding({}, column="Fy_N")
+    if found.outward < -NEGLIGIBLE_SHARE:
+        yield {"column": "Fy_N"}
 
 
 SIGNS = tuple(

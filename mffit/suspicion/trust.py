@@ -28,7 +28,7 @@ from mffit.constants import (
     ODD_SWEEP_RATIO,
 )
 from mffit.measured import Drift, LoadResult, OneWayLag, SideslipZeros
-from mffit.measured.result import path_in_words
+from mffit.measured.result import path_in_words, usual_ply_steer
 from mffit.points import Points
 from mffit.points.noise import OverNoise, estimated_noise, over_noise, stating
 from mffit.quantities import CHANNELS, column
@@ -222,7 +222,7 @@ of_measurement = partial(rule, when=When.MEASURED)
 )
 def not_ended(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Fall of the sum of squares that an undamped step from the end of the search promises; 0 at a minimum."""
-    if fit.left > constants.LARGEST_FALL_LEFT:
+    if fit.left > constants.DOUBTFUL_SIGMA**2:
         names = ", ".join(held.name for held in fit.held)
         yield {"left": fit.left, "held": f" ({names})" if names else ""}
 
@@ -245,7 +245,7 @@ def above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
         certain = rough or (fit.wrong(name) and fit.cause_is_certain and not fit.against)
         if certain or fit.doubtful(name):
             facts = {"channel": name, "ratio": fit.misfit(name).ratio, "carriers": _carriers(fit, name)}
-            yield {**facts, "noise": noise, "cause": _cause(fit), "doubtful": fit.averaged or not certain}
+            yield {**facts, "noise": noise, "cause": _cause(fit), "asked": fit.averaged or not certain}
 
 
 @of_model(
@@ -304,7 +304,7 @@ def unexplained(fit: FinishedFit) -> Iterator[dict[str, Any]]:
             predicted = 1.0 - (out.typical / float(np.nanstd(fit.points.channel(name)))) ** 2
             if predicted < share:
                 share, where = predicted, " in a sweep to which it is not fitted (median)"
-        if share < constants.EXPLAINED_VARIANCE and not fit.at_the_noise(name):
+        if share < 1.0 - share and not fit.at_the_noise(name):  # more is left than explained
             yield {"channel": name, "percent": 100.0 * max(share, 0.0), "where": where}
 
 
@@ -377,7 +377,7 @@ def zeros_contradict(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     """Sideslip zeros of one set-up, from forward and backward runs at all its loads and paths: they are one angle."""
     for z in measured.sideslip_zeros:
         if z.chance < ndtr(-constants.DOUBTFUL_SIGMA):
-            yield _apart(z) | {"doubtful": z.chance >= ndtr(-constants.CERTAIN_SIGMA)}
+            yield _apart(z) | {"asked": z.chance >= ndtr(-constants.CERTAIN_SIGMA)}
 
 
 def _apart(found: SideslipZeros) -> dict[str, Any]:
@@ -410,9 +410,9 @@ def drift_between_sweeps(measured: JudgedMeasurement) -> Iterator[dict[str, Any]
     "sweep the other way, too, or slower over the road",
 )
 def sweeps_of_one_way(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
-    """Lag of a usual tyre where no sweep goes the other way, if it is more than an axis is usually misaligned."""
+    """Lag of a usual tyre where no sweep goes the other way, if it exceeds the usual ply-steer, which looks like it."""
     lag = measured.lag
-    if lag is not None and abs(lag.angle) > constants.LAG_IN_DOUBT.rad:
+    if lag is not None and abs(lag.angle) > usual_ply_steer():
         row, force = measured.nominal, ""
         if row is not None and row.C_alpha is not None:
             force = f", {abs(row.C_alpha.value * lag.angle):.0f} N at {row.load:.0f} N"
@@ -546,7 +546,7 @@ def judge(found: JudgedMeasurement) -> Trust:
             rule.said(facts)
             for rule in rules
             for facts in rule.find(found)
-            if facts.get("doubtful", rule.outcome is Outcome.WARNED) == doubtful
+            if rule.only_asks(facts) == doubtful
         )
 
     if not isinstance(found, FinishedFit):
@@ -596,7 +596,7 @@ def _states(fit: FinishedFit) -> bool:
 
 def _blamed_by(rule: Rule, fit: FinishedFit) -> bool:
     """Whether a rule finds a reason, not only a doubt."""
-    return any(not facts.get("doubtful", False) for facts in rule.find(fit))
+    return not all(map(rule.only_asks, rule.find(fit)))
 
 
 def _noise_is_stated(fit: FinishedFit) -> bool:

@@ -80,10 +80,10 @@ def test_a_lean_tells_a_reversed_force_from_a_wheel_that_rolls_backwards(camber_
         files=["a.csv", "b.csv"],
     )
     (found,) = reversed_file.find(points, None)
-    assert found.file == "b.csv"
-    assert "its side force reversed" in found.facts["cause"]
-    assert ("direction of rolling" in found.facts["cause"]) == backward_too
-    assert found.column == ("alpha_deg" if backward_too else "Fy_N")
+    assert found["file"] == "b.csv"
+    assert "its side force reversed" in found["cause"]
+    assert ("direction of rolling" in found["cause"]) == backward_too
+    assert found["column"] == ("alpha_deg" if backward_too else "Fy_N")
 
 
 def test_one_wild_reading_is_named_with_its_line(tmp_path):

@@ -286,7 +286,7 @@ def test_mx_of_the_wrong_sign_is_told_by_camber_whatever_sideslip_does(qsx3, dri
     found = []
     for sign in (1.0, -1.0):
         points = make_points(alpha, gamma, Fz, p=2e5, V=10.0, phi_t=0.0, Fy=Fy, Mx=sign * Mx, kappa=kappa)
-        found.append([moment_reversed.said(one.facts) for one in moment_reversed.find(points, config)])
+        found.append([moment_reversed.said(facts) for facts in moment_reversed.find(points, config)])
     assert found[0] == []
     assert "scale = -1 for Mx_Nm" in found[1][0]
 

@@ -213,7 +213,7 @@ def test_without_a_stated_noise_left_out_sweeps_decide():
     assert told(80.0, U) == ()
 
 
-@pytest.mark.parametrize(("left", "trusted"), [(2.5, True), (11.0, False)])
+@pytest.mark.parametrize(("left", "trusted"), [(12.0, True), (12.5, False)])
 def test_a_search_that_is_stuck_is_not_trusted_whatever_its_misfit(left, trusted):
     held = (HeldNumber("PPX4", 1.0, 0.0),)
     for u in (U, np.nan):

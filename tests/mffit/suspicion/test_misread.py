@@ -278,9 +278,9 @@ def test_an_error_of_ten_per_cent_is_the_least_that_is_looked_at_without_them():
     assert not found_with(label=1.0 + 0.099 / NORMAL, confirmed=False)
 
 
-def test_it_is_twice_the_error_of_any_other_sweep():
-    assert found_with(label=1.5, one=0.5 / 2.1)
-    assert not found_with(label=1.5, one=0.5 / 1.9)
+def test_it_is_one_and_a_half_times_the_error_of_any_other_sweep():
+    assert found_with(label=1.5, one=0.5 / 1.6)
+    assert not found_with(label=1.5, one=0.5 / 1.4)
 
 
 def test_a_corrected_sweep_is_as_good_as_others():

@@ -69,8 +69,8 @@ def test_two_tyres_are_refused_with_both_radii(read, drive):
 
 def test_the_speed_of_the_wheel_alone_shows_two_tyres_too(read, drive):
     found = read(cornering(0.212), drive, without=("RL_m",))
-    (finding,) = two_tyres.find(*found)
-    assert "rolling radius" in finding.facts["words"]
+    (facts,) = two_tyres.find(*found)
+    assert "rolling radius" in facts["words"]
 
 
 @pytest.mark.parametrize(
