@@ -7,12 +7,12 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Unpack
 
 from tir.codegen.graph import PARAMETER, Graph
 from tir.codegen.program import INPUTS, NUMBERS, Program, Switches, refuse_zero_divisors, trace
 from tir.errors import TirError
-from tir.mode import warn_of_doubt, words
+from tir.mode import SwitchOptions, warn_of_doubt, words
 from tir.parameters import TABLE
 from tir.record import TyreRecord
 from tir.temperature import REFERENCE, factors_at, held, terms_of
@@ -97,20 +97,20 @@ class ExportedTyre(NamedTuple):
 
 
 def exported(
-    tyre: TyreRecord, outputs: Sequence[str], tunable: Iterable[str] | None = None, **switches: bool | None
+    tyre: TyreRecord,
+    outputs: Sequence[str],
+    tunable: Iterable[str] | None = None,
+    **switches: Unpack[SwitchOptions],
 ) -> ExportedTyre:
     """A tyre for code with these outputs; ``tunable`` are the numbers that the user may change, by default all that can be.
 
-    ``switches`` are turn_slip (None: as the file's USE_MODE says), star and limits. Warns of doubtful coefficients of turn slip,
-    and of a correction, which is not exported. Raises TirError if a value is not finite, an output divides by one that is 0, or a
-    name of ``tunable`` cannot be turned.
+    Warns of doubtful coefficients of turn slip, and of a correction, which is not exported. Raises TirError if a value is not
+    finite, an output divides by one that is 0, or a name of ``tunable`` cannot be turned.
     """
     tyre.leave_correction("exported code")
-    on = switches["turn_slip"]
-    on = tyre.turn_slip if on is None else bool(on)
-    if on:
+    found = tyre.switches(**switches)
+    if found.turn_slip:
         warn_of_doubt(tyre.values, tyre.present)
-    found = Switches(on, bool(switches["star"]), bool(switches["limits"]))
     refuse_zero_divisors(tyre.p, found, outputs)
     for name in NUMBERS:
         if not math.isfinite(tyre[name]):

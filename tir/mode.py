@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Collection, Mapping
-from typing import Any
+from typing import Any, TypedDict
 
 from tir.errors import TirWarning
 from tir.parameters import TABLE, TURN_SLIP
@@ -15,6 +15,14 @@ BLOCK = tuple(row for row in TABLE if row.section == TURN_SLIP and row.files == 
 
 INSIDE = ("tir.", "functools")
 """Modules skipped when a warning is located: this package, and the cache of its properties."""
+
+
+class SwitchOptions(TypedDict, total=False):
+    """Switches of calls and exports by name, each with its default if left out."""
+
+    turn_slip: bool | None  #: whether spin acts; default: if the units digit of the file's USE_MODE is 5
+    star: bool  #: tan(alpha) and sin(gamma) as inputs of the formulae
+    limits: bool  #: inputs held to the file's ranges
 
 
 def asks_for_turn_slip(values: Mapping[str, Any]) -> bool:

@@ -14,16 +14,17 @@ from inspect import Parameter, Signature
 from numbers import Complex
 from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
-from typing import Any, Literal, NamedTuple, Self, overload
+from typing import Any, Literal, NamedTuple, Self, Unpack, overload
 
 import numpy as np
 
 from tir.correction import Correction, read_correction
 from tir.defaults import completed, followed
 from tir.document import Document
+from tir.equations.normalise import Switches
 from tir.errors import Problem, TirError
 from tir.inputs import records, way_for
-from tir.mode import asks_for_turn_slip, warn, warn_of_doubt
+from tir.mode import SwitchOptions, asks_for_turn_slip, warn, warn_of_doubt
 from tir.parameters import BY_NAME, TABLE
 
 TextKey = Literal["TYRESIDE", "PROPERTY_FILE_FORMAT"]
@@ -112,15 +113,14 @@ class TyreRecord:
         """Whether the file asks for turn slip: the units digit of USE_MODE is 5."""
         return asks_for_turn_slip(self.values)
 
-    def turns(self, turn_slip: bool | None, phi_t: Any) -> bool:
-        """Whether spin acts in a call with these arguments; warns once if it does so by default with doubtful coefficients."""
-        if turn_slip is not None:
-            return bool(turn_slip)
-        return (phi_t is not None or self.turn_slip) and self._on
+    def switches(self, phi_t: Any = None, **options: Unpack[SwitchOptions]) -> Switches:
+        """The switches of a call or an export; by default spin also acts in a call that gives ``phi_t``."""
+        on, others = options.pop("turn_slip", None), {name: bool(x) for name, x in options.items()}
+        return Switches(phi_t is not None or self.turn_slip if on is None else bool(on), **others)
 
     @cached_property
-    def _on(self) -> bool:
-        """True, after one warning if the tyre's coefficients of turn slip are doubtful."""
+    def may_turn(self) -> bool:
+        """True, after one warning if the tyre's coefficients of turn slip are doubtful: in a call, spin acts by default."""
         warn_of_doubt(self.values, self.present)
         return True
 

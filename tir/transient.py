@@ -21,7 +21,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tir.calls import lag_of
-from tir.codegen.program import Switches
 from tir.equations.forces import Forces
 from tir.errors import TirError
 from tir.tyre import Tyre
@@ -37,21 +36,29 @@ class Contact(NamedTuple):
     v: Any = 0.0  #: to the right [m]
 
 
+class ContactInputs(NamedTuple):
+    """Motion, load and pressure of the wheel, ISO-W; floats or arrays (n,)."""
+
+    Fz: Any  #: load [N]; without load the contact is lost and springs back
+    Vx: Any  #: speed of the contact along the wheel [m/s], < 0 rolls backwards
+    Vsx: Any = 0.0  #: longitudinal slip speed Vx - Re omega [m/s]; kappa = -Vsx/Vx in steady state
+    Vsy: Any = 0.0  #: lateral slip speed [m/s]; alpha = atan(Vsy/Vx) in steady state
+    gamma: Any = 0.0  #: camber [rad]
+    phi_t: Any = None  #: turn slip [1/m], without lag
+    p: Any = None  #: inflation pressure [Pa], default INFLPRES
+    damping: Any = 0.0
+    """Of the contact at standstill [Ns/m], fading out towards VXLOW; without it a car that has stopped keeps oscillating on its
+    carcass."""
+
+
 def step(
     tyre: Tyre,
     contact: Contact,
     dt: float,
-    Fz: Any,
-    Vx: Any,
-    Vsx: Any = 0.0,
-    Vsy: Any = 0.0,
-    gamma: Any = 0.0,
-    phi_t: Any = None,
-    p: Any = None,
-    *,
-    damping: float = 0.0,
+    *inputs: Any,
     turn_slip: bool | None = None,
     limits: bool = False,
+    **more: Any,
 ) -> tuple[Contact, Forces[Any]]:
     """The contact after ``dt``, and the forces there.
 
@@ -60,15 +67,7 @@ def step(
     tyre : with the file's relaxation (LONGITUDINAL_STIFFNESS, LATERAL_STIFFNESS, PCFX1-3, PCFY1-3)
     contact : before the step
     dt : length of the step [s]; infinite gives the steady state
-    Fz : load [N], float or (n,) as every input; without load the contact is lost and springs back
-    Vx : speed of the contact along the wheel [m/s], < 0 rolls backwards
-    Vsx : longitudinal slip speed Vx - Re omega [m/s]; kappa = -Vsx/Vx in steady state
-    Vsy : lateral slip speed [m/s]; alpha = atan(Vsy/Vx) in steady state
-    gamma : camber [rad]
-    phi_t : turn slip [1/m], without lag
-    p : inflation pressure [Pa], default INFLPRES
-    damping : of the contact at standstill [Ns/m], which fades out towards VXLOW; without it a car that has stopped
-        keeps oscillating on its carcass
+    inputs, more : Fz, Vx, Vsx, Vsy, gamma, phi_t, p, damping, in this order or by name, see :class:`ContactInputs`
     turn_slip, limits : as in a call of the tyre
 
     Returns
@@ -83,39 +82,36 @@ def step(
     """
     if not dt >= 0.0:
         raise TirError(f"the step dt is {dt:g} s, but time only runs forwards: give 0 or more")
-    lag, inputs = _lag(tyre, (Fz, Vx, Vsx, Vsy, gamma, phi_t, p, damping), turn_slip, limits)
-    after = Contact(*lag.after(*contact, *inputs, dt))
-    return after, _forces(lag, after, inputs)
+    lag, known = _lag(tyre, ContactInputs(*inputs, **more), turn_slip, limits)
+    after = Contact(*lag.after(*contact, *known, dt))
+    return after, _forces(lag, known, after)
 
 
 def forces(
     tyre: Tyre,
     contact: Contact,
-    Fz: Any,
-    Vx: Any,
-    Vsx: Any = 0.0,
-    Vsy: Any = 0.0,
-    gamma: Any = 0.0,
-    phi_t: Any = None,
-    p: Any = None,
-    *,
-    damping: float = 0.0,
+    *inputs: Any,
     turn_slip: bool | None = None,
     limits: bool = False,
+    **more: Any,
 ) -> Forces[Any]:
     """The forces [N] and moments [Nm] of a deflected contact; arguments as in :func:`step`."""
-    lag, inputs = _lag(tyre, (Fz, Vx, Vsx, Vsy, gamma, phi_t, p, damping), turn_slip, limits)
-    return _forces(lag, contact, inputs)
+    return _forces(*_lag(tyre, ContactInputs(*inputs, **more), turn_slip, limits), contact)
 
 
 def _lag(
-    tyre: Tyre, given: tuple[Any, ...], turn_slip: bool | None, limits: bool
-) -> tuple[ContactLag, tuple[Any, ...]]:
+    tyre: Tyre, given: ContactInputs, turn_slip: bool | None, limits: bool
+) -> tuple[ContactLag, ContactInputs]:
     """The functions of the tyre's lag, and their inputs without the deflection."""
-    *moving, phi_t, p, damping = given
-    lag = lag_of(tyre, Switches(tyre.turns(turn_slip, phi_t), False, bool(limits)))
-    return lag, (*moving, 0.0 if phi_t is None else phi_t, tyre["INFLPRES"] if p is None else p, damping)
+    switches = tyre.switches(given.phi_t, turn_slip=turn_slip, limits=limits)
+    if turn_slip is None:
+        switches = switches._replace(turn_slip=switches.turn_slip and tyre.may_turn)
+    if given.phi_t is None:
+        given = given._replace(phi_t=0.0)
+    if given.p is None:
+        given = given._replace(p=tyre["INFLPRES"])
+    return lag_of(tyre, switches), given
 
 
-def _forces(lag: ContactLag, contact: Contact, inputs: tuple[Any, ...]) -> Forces[Any]:
+def _forces(lag: ContactLag, inputs: ContactInputs, contact: Contact) -> Forces[Any]:
     return Forces(*lag.deflected(*contact, *inputs)[: len(Forces._fields)])

@@ -9,7 +9,7 @@ from dataclasses import FrozenInstanceError
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Never, Self, overload
+from typing import TYPE_CHECKING, Any, Never, Protocol, Self, TypeVar, Unpack, overload
 
 from tir import calls
 from tir.codegen.arrays import array_function
@@ -18,6 +18,7 @@ from tir.document import Document, encoded, read_document
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, counted
 from tir.exporting import exported
+from tir.mode import SwitchOptions
 from tir.parameters import BY_NAME, TABLE
 from tir.properties import described
 from tir.record import TyreRecord
@@ -32,6 +33,53 @@ if TYPE_CHECKING:
     from tir.drawing import Figure
 
     Floats = NDArray[np.float64]
+
+
+Single = TypeVar("Single", covariant=True)
+Several = TypeVar("Several", covariant=True)
+
+
+class Evaluation(Protocol[Single, Several]):
+    """A call at an operating condition, for type checkers: floats give ``Single``, arrays ``Several``."""
+
+    @overload
+    def __call__(
+        self,
+        Fz: float,
+        alpha: float = ...,
+        gamma: float = ...,
+        kappa: float = ...,
+        phi_t: float | None = ...,
+        Vx: float | None = ...,
+        p: float | None = ...,
+        **switches: Unpack[SwitchOptions],
+    ) -> Single: ...
+
+    @overload
+    def __call__(
+        self,
+        Fz: ArrayLike,
+        alpha: ArrayLike = ...,
+        gamma: ArrayLike = ...,
+        kappa: ArrayLike = ...,
+        phi_t: ArrayLike | None = ...,
+        Vx: ArrayLike | None = ...,
+        p: ArrayLike | None = ...,
+        **switches: Unpack[SwitchOptions],
+    ) -> Several: ...
+
+
+@overload
+def evaluation(function: Callable[..., Forces[Any]]) -> Evaluation[Forces[float], Forces[Floats]]: ...
+
+
+@overload
+def evaluation(function: Callable[..., State[Any]]) -> Evaluation[State[float], State[Floats]]: ...
+
+
+def evaluation(function: Callable[..., Any]) -> Any:
+    """The method itself, with the types of an :class:`Evaluation`."""
+    return function
 
 
 class Tyre(TyreRecord):
@@ -117,38 +165,7 @@ class Tyre(TyreRecord):
         """
         return at_temperature(self, T_degC)
 
-    @overload
-    def __call__(
-        self,
-        Fz: float,
-        alpha: float = ...,
-        gamma: float = ...,
-        kappa: float = ...,
-        phi_t: float | None = ...,
-        Vx: float | None = ...,
-        p: float | None = ...,
-        *,
-        turn_slip: bool | None = ...,
-        star: bool = ...,
-        limits: bool = ...,
-    ) -> Forces[float]: ...
-
-    @overload
-    def __call__(
-        self,
-        Fz: ArrayLike,
-        alpha: ArrayLike = ...,
-        gamma: ArrayLike = ...,
-        kappa: ArrayLike = ...,
-        phi_t: ArrayLike | None = ...,
-        Vx: ArrayLike | None = ...,
-        p: ArrayLike | None = ...,
-        *,
-        turn_slip: bool | None = ...,
-        star: bool = ...,
-        limits: bool = ...,
-    ) -> Forces[Floats]: ...
-
+    @evaluation
     def __call__(
         self,
         Fz: Any,
@@ -184,7 +201,7 @@ class Tyre(TyreRecord):
             else arrays of the common shape.
         """
         if turn_slip is None:
-            turn_slip = (phi_t is not None or self.turn_slip) and self._on
+            turn_slip = (phi_t is not None or self.turn_slip) and self.may_turn
         if phi_t is None:
             phi_t = 0.0
         if Vx is None:
@@ -199,38 +216,7 @@ class Tyre(TyreRecord):
         switches = Switches(bool(turn_slip), bool(star), bool(limits))
         return calls.forces(self, (Fz, alpha, gamma, kappa, phi_t, Vx, p), switches)
 
-    @overload
-    def state(
-        self,
-        Fz: float,
-        alpha: float = ...,
-        gamma: float = ...,
-        kappa: float = ...,
-        phi_t: float | None = ...,
-        Vx: float | None = ...,
-        p: float | None = ...,
-        *,
-        turn_slip: bool | None = ...,
-        star: bool = ...,
-        limits: bool = ...,
-    ) -> State[float]: ...
-
-    @overload
-    def state(
-        self,
-        Fz: ArrayLike,
-        alpha: ArrayLike = ...,
-        gamma: ArrayLike = ...,
-        kappa: ArrayLike = ...,
-        phi_t: ArrayLike | None = ...,
-        Vx: ArrayLike | None = ...,
-        p: ArrayLike | None = ...,
-        *,
-        turn_slip: bool | None = ...,
-        star: bool = ...,
-        limits: bool = ...,
-    ) -> State[Floats]: ...
-
+    @evaluation
     def state(
         self,
         Fz: Any,
@@ -261,18 +247,16 @@ class Tyre(TyreRecord):
             self.values["LONGVL"] if Vx is None else Vx,
             self.values["INFLPRES"] if p is None else p,
         )
-        on = phi_t is not None or self.turn_slip if turn_slip is None else bool(turn_slip)
-        return calls.state(self, inputs, Switches(on, bool(star), bool(limits)))
+        switches = self.switches(phi_t, turn_slip=turn_slip, star=star, limits=limits)
+        return calls.state(self, inputs, switches)
 
     def array_function(
         self,
         xp: Any,
         *,
         outputs: tuple[str, ...] = Forces._fields,
-        turn_slip: bool | None = None,
-        star: bool = False,
-        limits: bool = False,
         tunable: Sequence[str] = (),
+        **switches: Unpack[SwitchOptions],
     ) -> Callable[..., Any]:
         """The tyre as a function of the arrays of a library that differentiates: JAX, torch; also numpy and CuPy.
 
@@ -284,9 +268,9 @@ class Tyre(TyreRecord):
         ----------
         xp : ``jax.numpy``, ``torch``, ``numpy`` or ``cupy``; JAX computes in double precision with ``jax_enable_x64`` only
         outputs : fields of Forces and State
-        turn_slip : whether spin acts; default: if the units digit of the file's USE_MODE is 5
-        star, limits : as in a call of the tyre
         tunable : scaling factors, and ``T_degC`` if the file has temperature terms, that become further inputs, in this order
+        switches : ``turn_slip``: whether spin acts, default: if the units digit of the file's USE_MODE is 5; ``star``,
+            ``limits``: as in a call of the tyre
 
         Returns
         -------
@@ -299,7 +283,7 @@ class Tyre(TyreRecord):
             If ``xp`` is no array library, a value by which the equations divide is 0, a name cannot be turned, or an output is
             unknown.
         """
-        made = exported(self, outputs, tunable, turn_slip=turn_slip, star=star, limits=limits)
+        made = exported(self, outputs, tunable, **switches)
         return array_function(made, outputs, xp)
 
     def plot(self, *, loads: Iterable[float] | None = None, turn_slip: bool | None = None) -> Figure:

@@ -34,8 +34,15 @@ def stiffness() -> float:
     return tyre.state(1400.0).K_ya * tyre["LKY"]
 
 
+def stiffnesses(alpha: NDArray[np.float64]) -> NDArray[np.float64]:
+    return tyre.state(1400.0, alpha, turn_slip=True).K_ya
+
+
 def side() -> str:
     return tyre["TYRESIDE"]
+
+
+tir.export_c(tyre, limit=True)
 
 
 def wrong() -> str:
@@ -57,5 +64,6 @@ def test_a_strict_program_knows_the_types_of_forces_and_coefficients(tmp_path, m
     errors = re.findall(r"^program\.py:(\d+): error: (.*)$", said, re.MULTILINE)
     line = len(PROGRAM.splitlines())
     assert [(int(at), text) for at, text in errors] == [
-        (line, 'Incompatible return value type (got "float", expected "str")  [return-value]')
+        (line - 4, 'Unexpected keyword argument "limit" for "export_c"; did you mean "limits"?  [call-arg]'),
+        (line, 'Incompatible return value type (got "float", expected "str")  [return-value]'),
     ], said

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, Unpack
 
 from tir.codegen.lag import LAG_INPUTS, LAG_TEXTS, LAGGING, lag_programs
 from tir.codegen.program import INPUTS, Program, called
 from tir.codegen.source import COMMON, SourceDialect, assignments
 from tir.equations.forces import Forces
 from tir.exporting import INPUT_TEXTS, OUTPUT_TEXTS, STATES, ExportedTyre, exported, refuse_name
+from tir.mode import SwitchOptions
 from tir.record import TyreRecord
 
 WORDS = {
@@ -76,11 +77,9 @@ def export_c(
     tyre: TyreRecord,
     *,
     name: str = "tyre",
-    turn_slip: bool | None = None,
-    star: bool = False,
-    limits: bool = False,
     tunable: bool = False,
     lag: bool = False,
+    **switches: Unpack[SwitchOptions],
 ) -> Code:
     """The tyre as C99: one function of the operating condition, no allocation, no state, doubles only.
 
@@ -88,13 +87,13 @@ def export_c(
     ----------
     tyre : its values become constants of the code
     name : name of the files, and prefix of the names inside
-    turn_slip : whether spin acts; default: if the units digit of the file's USE_MODE is 5
-    star, limits : as in a call of the tyre
     tunable : also ``<name>_evaluate_tuned`` and ``<name>_evaluate_state_tuned``, whose first argument points to a
         ``<name>_tuning`` of the scaling factors, and of the temperature if the file has terms for it; ``<name>_as_in_file()``
         returns their values in the file
     lag : also the lag of the contact, see :mod:`tir.transient`, with the same tuning: ``<name>_step`` returns the
         deflection after a step of time, ``<name>_contact`` forces and states of a deflection
+    switches : ``turn_slip``: whether spin acts, default: if the units digit of the file's USE_MODE is 5; ``star``, ``limits``:
+        as in a call of the tyre
 
     Returns
     -------
@@ -109,7 +108,7 @@ def export_c(
     """
     refuse_name(name, "C", taken)
     outputs = [field for _, fields in KINDS.values() for field in fields]
-    made = exported(tyre, outputs, turn_slip=turn_slip, star=star, limits=limits)
+    made = exported(tyre, outputs, **switches)
     text = _Text(name, *_openings(name, made))
     for kind, (_, fields) in KINDS.items():
         text.record(kind, {field: OUTPUT_TEXTS[field] for field in fields})

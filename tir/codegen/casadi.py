@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Unpack
 
 from tir.codegen.library import operations_of, run
 from tir.codegen.program import called
 from tir.equations.forces import Forces
 from tir.errors import TirError
 from tir.exporting import exported
+from tir.mode import SwitchOptions
 from tir.record import TyreRecord
 
 
@@ -18,10 +19,8 @@ def casadi_function(
     *,
     name: str | None = None,
     outputs: tuple[str, ...] = Forces._fields,
-    turn_slip: bool | None = None,
-    star: bool = False,
-    limits: bool = False,
     tunable: Sequence[str] = (),
+    **switches: Unpack[SwitchOptions],
 ) -> Any:
     """The tyre as a ``casadi.Function`` of Fz, alpha, gamma, kappa, phi_t, Vx, p (ISO-W, SI, radians).
 
@@ -32,9 +31,9 @@ def casadi_function(
     tyre : its values become constants
     name : name of the function; default ``tyre_turn_slip`` with turn slip, else ``tyre``
     outputs : fields of Forces and State, one output each, in this order
-    turn_slip : whether spin acts; default: if the units digit of the file's USE_MODE is 5
-    star, limits : as in a call of the tyre
     tunable : scaling factors, and ``T_degC`` if the file has temperature terms, that become further inputs, in this order
+    switches : ``turn_slip``: whether spin acts, default: if the units digit of the file's USE_MODE is 5; ``star``, ``limits``:
+        as in a call of the tyre
 
     Raises
     ------
@@ -46,7 +45,7 @@ def casadi_function(
         import casadi
     except ImportError:
         raise TirError("casadi_function needs casadi, which is not installed: pip install casadi") from None
-    made = exported(tyre, outputs, tunable, turn_slip=turn_slip, star=star, limits=limits)
+    made = exported(tyre, outputs, tunable, **switches)
     program = made.program(outputs)
     starts = made.starts
     inputs = {key: casadi.SX.sym(called(key)) for key in starts}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, Unpack
 
 from tir.codegen.graph import CONSTANT, INPUT, level
 from tir.codegen.program import INPUTS, ORDER, Program, called
@@ -14,6 +14,7 @@ from tir.codegen.source import COMMON, COMPARISONS, SourceDialect, assignments, 
 from tir.equations.forces import Forces
 from tir.errors import TirError
 from tir.exporting import INPUT_TEXTS, OUTPUT_TEXTS, STATES, ExportedTyre, exported, refuse_name
+from tir.mode import SwitchOptions
 from tir.record import TyreRecord
 
 MORE = {
@@ -77,10 +78,8 @@ def export_matlab(
     tyre: TyreRecord,
     *,
     name: str = "tyre",
-    turn_slip: bool | None = None,
-    star: bool = False,
-    limits: bool = False,
     origin: str = "",
+    **switches: Unpack[SwitchOptions],
 ) -> MatlabCode:
     """The tyre as a MATLAB function of arrays: ``[r, s, tuning] = name(Fz, kappa, alpha, gamma, phi_t, Vx, p, tuning)``.
 
@@ -92,9 +91,9 @@ def export_matlab(
     ----------
     tyre : its values become constants of the code
     name : of the function and its file
-    turn_slip : whether spin acts; default: if the units digit of the file's USE_MODE is 5
-    star, limits : as in a call of the tyre
     origin : a line for the help text, such as the name of the property file
+    switches : ``turn_slip``: whether spin acts, default: if the units digit of the file's USE_MODE is 5; ``star``, ``limits``:
+        as in a call of the tyre
 
     Returns
     -------
@@ -112,10 +111,11 @@ def export_matlab(
             f"{name!r} is longer than the {LONGEST_NAME} characters that MATLAB leaves: use a shorter name"
         )
     outputs = (*Forces._fields, *STATE_TEXTS)
-    made = exported(tyre, outputs, turn_slip=turn_slip, star=star, limits=limits)
+    made = exported(tyre, outputs, **switches)
     one_line = " ".join(origin.encode("ascii", "replace").decode().split())
     usual = {"Vx": MATLAB.literal(float(tyre["LONGVL"])), "pressure": MATLAB.literal(float(tyre["INFLPRES"]))}
-    use = (2 - limits) * 100 + (1 + star) * 10 + 1 + made.switches.turn_slip
+    turn_slip, star, limits = made.switches
+    use = (2 - limits) * 100 + (1 + star) * 10 + 1 + turn_slip
     about = [*made.opening, *filter(None, [one_line])]
     function = [*_help(name, made, about), *_entry(name, made, usual), *_evaluation(made.program(outputs))]
     return MatlabCode(_text(function), _mfeval(name, about[2:], use, usual["pressure"]))
