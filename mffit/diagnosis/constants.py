@@ -73,13 +73,6 @@ MEMORY_MODEL_PROBABILITIES = Series(
     "-",
     "Prior of errors without memory, with one, and with both: the two simple descriptions are alike, both together rarer.",
 )
-EVIDENCE_STEP = Real(
-    0.1, "-", "Step of a logarithm for the differences of slopes that give the width of its distribution."
-)
-LEAST_CURVATURE = Real(0.05, "-", "Smallest curvature that counts: a prior alone has more than 0.2.")
-MOST_SCATTER_STEPS = Count(
-    20, "-", "Most steps of a search for the scatter; its likelihood is flat near the maximum."
-)
 TAIL_DEGREES_OF_FREEDOM = Series(
     (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0), "-", "Degrees of freedom of Student's t that are tried."
 )

@@ -7,18 +7,26 @@ them explains. Models of the errors (descriptions) are compared by evidence, in 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize
 
 from mffit.constants import ASSUMED_NOISE_SHARE
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import MemorySpan, Noise, RunOffsets, Scatter
 from mffit.diagnosis.tails import beyond_weights, heavy_tails, weights
 from mffit.linearised.chained import Chained, Memory, chains_of
+from mffit.linearised.search import (
+    ParameterSearch,
+    SearchedParameter,
+    arcsine,
+    half_cauchy,
+    normal,
+    share_of,
+    uniform,
+)
 from mffit.scatter import rms
 from tir.frozen import ReadOnlyArrays
 
@@ -42,7 +50,7 @@ class ExplainingColumns(ReadOnlyArrays):
 
 @dataclass(frozen=True, slots=True)
 class Description:
-    """A model of the errors of a channel: its parameters are a scale, an amplitude of smooth structure, and these."""
+    """A model of the errors of a channel."""
 
     span: MemorySpan | None = None  #: chains of the autocorrelation; None without autocorrelation
     independent: bool = False  #: whether there is also an independent part
@@ -51,52 +59,55 @@ class Description:
     probability: float = 1.0  #: prior probability
 
     @property
-    def shapes(self) -> tuple[Callable[[float], tuple[float, float]], ...]:
-        """For every parameter after the scale, a function of its coordinate that returns the log prior and its derivative."""
-        memory = [_arcsine] * (self.span is not None) + [_uniform] * self.independent
-        return (*[_half_cauchy] * (1 + self.growth + self.offsets), *memory)
+    def parameters(self) -> dict[str, SearchedParameter]:
+        """The parameters: logarithms of sizes over the usual ones, and log odds of shares."""
+        size = SearchedParameter(0.0, -LARGEST, LARGEST, half_cauchy)
+        scale = size._replace(prior=normal(0.0, math.log(constants.STATED_NOISE_FACTOR)))
+        found = {"scale": scale, "smooth": size}
+        if self.growth:
+            found["growth"] = size
+        if self.offsets:
+            found["offsets"] = size
+        if self.span is not None:
+            start = float(constants.USUAL_LOG_ODDS_OF_MEMORY)
+            found["correlation"] = SearchedParameter(start, -LARGEST, LARGEST_MEMORY, arcsine)
+        if self.independent:
+            found["independent"] = size._replace(prior=uniform)
+        return found
 
 
 class ScatterNumbers(NamedTuple):
-    """The parameters of a description."""
+    """The numbers of a description."""
 
-    log_scale: float
+    scale: float  #: uncertainty over the stated one
     smooth: float  #: amplitude of smooth structure over the usual one
-    growth: float = 0.0  #: growth over the usual one
-    offsets: float = 0.0  #: offsets of runs over the usual ones
-    memory: Memory = Memory()
+    growth: float  #: growth over the usual one
+    offsets: float  #: offsets of runs over the usual ones
+    memory: Memory
+
+    @classmethod
+    def of(cls, x: Mapping[str, float]) -> ScatterNumbers:
+        """The numbers from their logarithms and log odds."""
+        scale, smooth, growth, offsets = (
+            math.exp(x.get(name, -math.inf)) for name in ("scale", "smooth", "growth", "offsets")
+        )
+        correlation, independent = (
+            share_of(x.get(name, -math.inf)) for name in ("correlation", "independent")
+        )
+        return cls(scale, smooth, growth, offsets, Memory(correlation, independent))
 
 
-def _half_cauchy(x: float) -> tuple[float, float]:
-    """Log prior and derivative of a size over its usual one, by its logarithm: half-Cauchy."""
-    square = math.exp(2.0 * x)
-    return math.log(2.0 / math.pi) + x - math.log1p(square), (1.0 - square) / (1.0 + square)
-
-
-def _arcsine(x: float) -> tuple[float, float]:
-    """Log prior and derivative of a correlation between 0 and 1, by its log odds: Jeffreys' prior, which allows values near 1."""
-    share = _share(x)
-    log = math.log(2.0 / math.pi) + math.log(share) + 0.5 * (math.log1p(-share) - math.log1p(share))
-    return log, 1.0 - share - 0.5 * share - 0.5 * share * (1.0 - share) / (1.0 + share)
-
-
-def _uniform(x: float) -> tuple[float, float]:
-    """Log prior and derivative of a share, by its log odds: uniform."""
-    share = _share(x)
-    return math.log(share) + math.log1p(-share), 1.0 - 2.0 * share
-
-
-def _share(log_odds: float) -> float:
-    return 1.0 / (1.0 + math.exp(-log_odds))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Described(ReadOnlyArrays):
+@dataclass(frozen=True, slots=True)
+class Described:
     """A description at its most probable parameters."""
 
     by: Description
-    x: np.ndarray  #: coordinates of the parameters
+    x: Mapping[str, float]  #: most probable parameters, logarithms and log odds
     log_probability: float  #: log of prior probability times evidence
+
+    @property
+    def numbers(self) -> ScatterNumbers:
+        return ScatterNumbers.of(self.x)
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,25 +125,13 @@ class ScatterOfChannel(ReadOnlyArrays):
     weight: np.ndarray
     runs: np.ndarray  #: (m, k) offsets of runs at their usual size, if a description has them
 
-    def numbers(self, x: np.ndarray, by: Description) -> ScatterNumbers:
-        """The parameters from coordinates, which are logarithms of sizes and log odds of shares."""
-        log_scale, *rest = x.tolist()
-        left = iter(rest)
-        smooth = math.exp(next(left))
-        growth = math.exp(next(left)) if by.growth else 0.0
-        offsets = math.exp(next(left)) if by.offsets else 0.0
-        memory = _share(next(left)) if by.span else 0.0
-        return ScatterNumbers(
-            log_scale, smooth, growth, offsets, Memory(memory, _share(next(left)) if by.independent else 0.0)
-        )
-
     def uncertainty(self, at: ScatterNumbers) -> np.ndarray:
         """Standard uncertainty (m,) of every reading."""
         return np.sqrt(self._squares(at).sum(axis=0) / self.weight)
 
     def _squares(self, at: ScatterNumbers) -> np.ndarray:
         """Components of the variances (3, m) at weight 1: scaled stated one, growing one, constant one."""
-        stated = math.exp(at.log_scale) * self.stated
+        stated = at.scale * self.stated
         growing = at.growth * constants.USUAL_GROWTH * self.size
         return np.array([stated**2, growing**2, np.full(len(stated), self.least**2)])
 
@@ -145,53 +144,34 @@ class ScatterOfChannel(ReadOnlyArrays):
         columns = np.column_stack([self.named, self.smooth, self.runs])
         return Chained(self.residual, columns, self.chains[by.span or MemorySpan.SWEEP])
 
-    def likeliest(self, by: Description, near: np.ndarray | None = None) -> Described:
-        """A description at its most probable parameters, with evidence by Laplace approximation; ``near`` starts the search."""
-        model, shapes = self._model(by), by.shapes
-        wide = math.log(constants.STATED_NOISE_FACTOR)
+    def likeliest(self, by: Description, near: Described | None = None) -> Described:
+        """A description at its most probable parameters; the search starts at those of ``near``."""
+        model, names = self._model(by), tuple(by.parameters)
         first, last = self.named.shape[1], self.named.shape[1] + self.smooth.shape[1]
 
-        def falling(x: np.ndarray) -> tuple[float, np.ndarray]:
-            at = self.numbers(x, by)
+        def evidence(x: np.ndarray) -> tuple[float, np.ndarray]:
+            at = ScatterNumbers.of(dict(zip(names, x.tolist(), strict=True)))
             squares = self._squares(at)
             total = squares.sum(axis=0)
             found = model.evidence(np.sqrt(total / self.weight), self._sizes(at), at.memory)
-            slopes = [found.u @ (squares[0] / total) - x[0] / wide**2, np.sum(found.sizes[first:last])]
-            slopes += [found.u @ (squares[1] / total)] if by.growth else []
-            slopes += [np.sum(found.sizes[last:])] if by.offsets else []
-            shares = [at.memory.correlation, at.memory.independent][: (by.span is not None) + by.independent]
-            slopes += [found.memory[k] * s * (1.0 - s) for k, s in enumerate(shares)]
-            priors = np.array([shape(value) for shape, value in zip(shapes, x[1:].tolist(), strict=True)])
-            slope = np.array(slopes)
-            slope[1:] += priors[:, 1]
-            value = found.value - 0.5 * float(x[0]) ** 2 / wide**2 + float(np.sum(priors[:, 0]))
-            return -value, -slope
+            slopes = {
+                "scale": found.u @ (squares[0] / total),
+                "smooth": np.sum(found.sizes[first:last]),
+                "growth": found.u @ (squares[1] / total),
+                "offsets": np.sum(found.sizes[last:]),
+                "correlation": found.memory[0] * at.memory.correlation * (1.0 - at.memory.correlation),
+                "independent": found.memory[1] * at.memory.independent * (1.0 - at.memory.independent),
+            }
+            return found.value, np.array([slopes[name] for name in names])
 
-        start, bounds = np.zeros(1 + len(shapes)), [(-LARGEST, LARGEST)] * (1 + len(shapes))
-        if by.span is not None:
-            start[2 + by.growth + by.offsets] = constants.USUAL_LOG_ODDS_OF_MEMORY
-        if near is not None:
-            start[: len(near)] = near
-        if by.span is not None:
-            bounds[2 + by.growth + by.offsets] = (-LARGEST, LARGEST_MEMORY)
-        found = minimize(
-            falling,
-            start,
-            jac=True,
-            bounds=bounds,
-            method="L-BFGS-B",
-            options={"maxiter": int(constants.MOST_SCATTER_STEPS), "ftol": 1e-5},
-        )
-        slope, step = falling(found.x)[1], float(constants.EVIDENCE_STEP) * np.eye(len(found.x))
-        curvature = np.array([falling(found.x + d)[1] - slope for d in step]) / constants.EVIDENCE_STEP
-        curvature = 0.5 * (curvature + curvature.T)
-        axes = np.maximum(np.linalg.eigvalsh(curvature), constants.LEAST_CURVATURE)
-        volume = 0.5 * float(np.sum(np.log(2.0 * math.pi / axes)))
-        return Described(by, found.x, volume - float(found.fun) + math.log(by.probability))
+        search = ParameterSearch(by.parameters, evidence, len(self.residual))
+        x = search.most_probable(None if near is None else near.x)
+        probability = search.log_probability(x) + math.log(by.probability)
+        return Described(by, dict(zip(names, x.tolist(), strict=True)), probability)
 
     def standardised(self, found: Described) -> np.ndarray:
         """Error (m,) of every reading's prediction from all others, over its standard uncertainty at weight 1."""
-        at = self.numbers(found.x, found.by)
+        at = found.numbers
         seen = self._model(found.by).foretold(self.uncertainty(at), self._sizes(at), at.memory)
         return seen.error / np.sqrt(seen.variance + (self.weight - 1.0) * seen.own)
 
@@ -250,10 +230,10 @@ def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, si
         found, channel, tails, here = _of_channel(
             channel, runs, math.inf if explained.withdrawn else float(needed)
         )
-        at = channel.numbers(found.x, found.by)
+        at = found.numbers
         u[rows], weight[rows] = channel.uncertainty(at), channel.weight
         scatter[name] = Scatter(
-            scale=math.exp(at.log_scale),
+            scale=at.scale,
             growth=float(constants.USUAL_GROWTH) * at.growth,
             memory=at.memory.correlation,
             independent=at.memory.independent,
@@ -319,7 +299,7 @@ def _of_channel(
             for one, alone in rivals:
                 shifted = replace(one, runs=columns)
                 beside = _descriptions(shifted, offsets=True, only=span)
-                size = shifted.numbers(beside[0].x, beside[0].by).offsets
+                size = beside[0].numbers.offsets
                 odds = min(odds, _log_sum(beside) - _log_sum(alone))
             offsets[effect] = RunOffsets(odds, needed, size, frozenset())
             if odds > most:
@@ -342,7 +322,7 @@ def _weighted(
         channel = replace(channel, weight=weight)
         if change < constants.SCATTER_SETTLED:
             break
-        found = [channel.sample.likeliest(found[0].by, found[0].x)]
+        found = [channel.sample.likeliest(found[0].by, found[0])]
     return found, channel, tails
 
 
@@ -357,17 +337,17 @@ def _descriptions(
     some = channel.sample
     never, with_memory, with_both = constants.MEMORY_MODEL_PROBABILITIES
     first = some.likeliest(Description(offsets=offsets, probability=never))
-    growing = some.likeliest(replace(first.by, growth=True), first.x[:-1] if offsets else first.x)
+    growing = some.likeliest(replace(first.by, growth=True), first)
     if growing.log_probability - first.log_probability > constants.SURPRISING_LOG_ODDS:
         first = growing
     share = 1.0 / len(some.chains)
     found = [
-        some.likeliest(replace(first.by, span=span, probability=with_memory * share), first.x)
+        some.likeliest(replace(first.by, span=span, probability=with_memory * share), first)
         for span in ((only,) if only else some.chains)
     ]
     best = max(found, key=lambda one: one.log_probability)
     both = replace(best.by, independent=True, probability=with_both * share)
-    found += [first, some.likeliest(both, best.x)]
+    found += [first, some.likeliest(both, best)]
     found.sort(key=lambda one: -one.log_probability)
     proven = found[0].log_probability - constants.SURPRISING_LOG_ODDS
     if found[0].by.span is None:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import OptimizeResult, minimize
 
 from mffit.linearised import constants
 from mffit.linearised.mixed import Mixed, Variances
+from mffit.linearised.search import ParameterSearch, SearchedParameter, flat, normal
 from mffit.linearised.smooth import SmoothFunctions
 
 
@@ -24,19 +25,6 @@ class Components:
     shape: float  #: standard deviation of the runs' smooth deviations along the swept setting
     shape_length: float  #: length scale of these deviations, over the tested range [-]
     noise: float  #: standard deviation of the noise over the stated one [-]
-
-    @classmethod
-    def guess(cls, smooth: SmoothFunctions, misfit: float) -> Components:
-        """Starting values of the search: a model error as large as the misfit, and differences of runs of a third of it."""
-        return cls(
-            missed=misfit,
-            lengths=tuple(2.0 * one.spacing for one in smooth.inputs),
-            offset=misfit / 3.0,
-            scale=constants.LARGEST_RUN_SCALE / 10.0,
-            shape=misfit / 3.0,
-            shape_length=0.3,
-            noise=1.0,
-        )
 
     def over_one_input(self, smooth: SmoothFunctions) -> Iterator[Components]:
         """Variants in which the model error changes over one input only, and over the curvature of a path as it is."""
@@ -55,9 +43,9 @@ class Components:
         )
 
     @classmethod
-    def of_logarithms(cls, x: np.ndarray) -> Components:
+    def of_logarithms(cls, x: Iterable[float]) -> Components:
         """The components from their logarithms."""
-        size = np.exp(x).tolist()
+        size = [math.exp(one) for one in x]
         return cls(size[0], tuple(size[1:-5]), *size[-5:])
 
     def run_variance(self, force: np.ndarray) -> np.ndarray:
@@ -105,52 +93,56 @@ def most_probable(
     second search starts with model error over a single input; its result must be clearly more probable. ``further`` are log
     variances of the common numbers that follow the functions of ``smooth``.
     """
-    first = Components.guess(smooth, misfit)
-    guess = first.logarithms
-    usual = float(np.log(constants.USUAL_RATIO))
-    has_prior = np.ones(len(guess))
-    has_prior[[0, -1]] = 0.0  # the data alone determine model error and noise
+    parameters = _parameters(smooth, misfit)
 
-    def loss(x: np.ndarray) -> tuple[float, np.ndarray]:
+    def evidence(x: np.ndarray) -> tuple[float, np.ndarray]:
         given, by_common, by_own = variances(x, smooth)
         found = model.evidence(with_further(given, further))
         slope = found.common[: len(by_common)] @ by_common + found.own @ by_own
         slope[-1] += 2.0 * found.noise
-        far = has_prior * (x - guess) / usual
-        return -found.value + 0.5 * float(far @ far), -slope + far / usual
+        return found.value, slope
 
-    readings = sum(len(group) for group in model.groups)
-    bounds = _bounds(smooth, misfit)
+    search = ParameterSearch(parameters, evidence, sum(len(group) for group in model.groups))
 
-    def searched(begin: np.ndarray) -> OptimizeResult:
-        return minimize(
-            loss,
-            begin,
-            jac=True,
-            method="L-BFGS-B",
-            bounds=bounds,
-            options={
-                "maxiter": int(constants.COMPONENT_STEPS),
-                "ftol": constants.COMPONENT_TOLERANCE / max(readings, 1),
-            },
+    def best(begin: Components) -> np.ndarray:
+        return search.most_probable(dict(zip(parameters, begin.logarithms.tolist(), strict=True)))
+
+    first = Components.of_logarithms(one.start for one in parameters.values())
+    found = best(near or first)
+    seen = Components.of_logarithms(found)
+    if near is None and seen.offset > seen.missed and smooth.inputs:
+        begin = max(first.over_one_input(smooth), key=lambda one: search.density(one.logarithms)[0])
+        other = best(begin)
+        if search.density(other)[0] > search.density(found)[0] + constants.CERTAIN_EVIDENCE:
+            return Components.of_logarithms(other)
+    return seen
+
+
+def _parameters(smooth: SmoothFunctions, misfit: float) -> dict[str, SearchedParameter]:
+    """The components on the scale of the search, in the order of :attr:`Components.logarithms`.
+
+    The search starts at a model error as large as the misfit, and differences of runs of a third of it. Runs differ by at most
+    the misfit, and no length is below the spacing of the settings. The data alone determine model error and noise.
+    """
+    tiny, most = 1e-4 * misfit, float(constants.LARGEST_RUN_SCALE)
+
+    def around(start: float, lower: float, upper: float, *, known: bool = True) -> SearchedParameter:
+        at = math.log(start)
+        prior = normal(at, math.log(constants.USUAL_RATIO)) if known else flat
+        return SearchedParameter(at, math.log(lower), math.log(upper), prior)
+
+    lengths = {
+        f"length over {one.name}": around(
+            2.0 * one.spacing, one.spacing, constants.LONGEST_LENGTH * one.width
         )
-
-    if near is not None:
-        return Components.of_logarithms(searched(np.clip(near.logarithms, *np.transpose(bounds))).x)
-    found = searched(guess)
-    seen = Components.of_logarithms(found.x)
-    if seen.offset > seen.missed and smooth.inputs:
-        others = (np.clip(one.logarithms, *np.transpose(bounds)) for one in first.over_one_input(smooth))
-        other = searched(min(others, key=lambda x: loss(x)[0]))
-        if other.fun < found.fun - constants.CERTAIN_EVIDENCE:
-            found = other
-    return Components.of_logarithms(found.x)
-
-
-def _bounds(smooth: SmoothFunctions, misfit: float) -> list[tuple[float, float]]:
-    """Bounds of the log components: runs differ by at most the misfit, and no length is below the spacing of the settings."""
-    tiny = 1e-4 * misfit
-    missed = (tiny, 3.0 * misfit)
-    lengths = [(one.spacing, constants.LONGEST_LENGTH * one.width) for one in smooth.inputs]
-    of_runs = [(tiny, misfit), (1e-6, float(constants.LARGEST_RUN_SCALE)), (tiny, misfit), (0.05, 1.0)]
-    return [tuple(np.log(pair).tolist()) for pair in [missed, *lengths, *of_runs, (1e-3, 1e3)]]
+        for one in smooth.inputs
+    }
+    return {
+        "missed": around(misfit, tiny, 3.0 * misfit, known=False),
+        **lengths,
+        "offset": around(misfit / 3.0, tiny, misfit),
+        "scale": around(most / 10.0, 1e-6, most),
+        "shape": around(misfit / 3.0, tiny, misfit),
+        "shape_length": around(0.3, 0.05, 1.0),
+        "noise": around(1.0, 1e-3, 1e3, known=False),
+    }

@@ -57,8 +57,12 @@ CERTAIN_EVIDENCE = Real(
 LONGEST_LENGTH = Real(
     20.0, "-", "Largest length of smooth functions over the tested range: along it they are constant."
 )
-COMPONENT_STEPS = Count(60, "-", "Most steps of the search for the components.")
-COMPONENT_TOLERANCE = Real(0.05, "-", "Gain of log evidence at which the search for the components ends.")
+SEARCH_STEPS = Count(60, "-", "Most steps of a search for the most probable parameters.")
+SEARCH_TOLERANCE = Real(0.05, "-", "Gain of log evidence by a step at which such a search ends.")
+EVIDENCE_STEP = Real(
+    0.1, "-", "Step of a logarithm for the differences of slopes that give the width of its distribution."
+)
+LEAST_CURVATURE = Real(0.05, "-", "Smallest curvature that counts: a prior alone has more than 0.2.")
 LONGEST_CHAIN = Count(
     200, "-", "Readings after which a chain of errors with a memory is cut: many memories of any rig."
 )
