@@ -81,77 +81,13 @@ class ChainedErrors(ReadOnlyArrays):
         """Whether all errors are independent."""
         return not self.memory.correlation
 
-    @property
-    def by_steps(self) -> bool:
-        """Whether errors depend on their predecessor alone, so that whitening needs no matrix."""
-        return not self.memory.independent
-
-    @cached_property
-    def _order(self) -> np.ndarray:
-        """Rows (m,) in the order of the chains."""
-        return np.concatenate([np.zeros(0, dtype=int), *self.chains])
-
-    @cached_property
-    def _in_order(self) -> bool:
-        return bool(np.all(np.diff(self._order) == 1))
-
-    @cached_property
-    def _follows(self) -> np.ndarray:
-        """Mask (m - 1,) of the rows in order, from the second on, that follow another one of their chain."""
-        lengths = [len(rows) for rows in self.chains]
-        chain = np.repeat(np.arange(len(lengths)), lengths)
-        follows: np.ndarray = np.diff(chain) == 0
-        return follows
-
     def whiten(self, x: np.ndarray) -> np.ndarray:
         """Rows (m,) or (m, k) multiplied by the inverse Cholesky factor, so that their errors become independent."""
-        if self.trivial:
-            return x
-        return self._of_steps(x, back=False) if self.by_steps else self._by_chain(self.root, x)
+        return x if self.trivial else self._by_chain(self.root, x)
 
     def back(self, x: np.ndarray) -> np.ndarray:
         """Rows (m,) or (m, k) multiplied by the transposed inverse Cholesky factor."""
-        if self.trivial:
-            return x
-        return self._of_steps(x, back=True) if self.by_steps else self._by_chain(self.root.T, x)
-
-    def _of_steps(self, x: np.ndarray, *, back: bool) -> np.ndarray:
-        """The two products with the inverse Cholesky factor, which has two diagonals if no share is independent."""
-        scale = (1.0 - self.memory.correlation**2) ** -0.5
-        own: np.ndarray = x[self._order]
-        shape = (-1, *[1] * (x.ndim - 1))
-        later = np.where(self._follows, scale, 1.0).reshape(shape)
-        carried = np.where(self._follows, self.memory.correlation * scale, 0.0).reshape(shape)
-        changed = own.copy()
-        changed[1:] *= later
-        if back:
-            changed[:-1] -= carried * own[1:]
-        else:
-            changed[1:] -= carried * own[:-1]
-        if self._in_order:
-            return changed
-        out: np.ndarray = np.empty_like(x)
-        out[self._order] = changed
-        return out
-
-    def by_correlation(self, a: np.ndarray, b: np.ndarray) -> float:
-        """Derivative of log determinant + sum of a_k' inverse b_k over the columns (m, k), by the correlation.
-
-        For errors that depend on their predecessor alone.
-        """
-        correlation, follows = self.memory.correlation, self._follows
-        c = 1.0 / (1.0 - correlation**2)
-        x, y = a[self._order], b[self._order]
-        square = np.einsum("ij,ij->i", x, y)
-        ends = np.sum(square[:-1][follows]) + np.sum(square[1:][follows])
-        crossed = np.sum(
-            (np.einsum("ij,ij->i", x[1:], y[:-1]) + np.einsum("ij,ij->i", x[:-1], y[1:]))[follows]
-        )
-        # The inverse has c on its diagonal at the ends of a chain, c (1 + correlation^2) within it, -c correlation next to it.
-        slope = 2.0 * correlation * c**2
-        return float(
-            slope * ends - (slope * correlation + c) * crossed - 2.0 * correlation * c * np.sum(follows)
-        )
+        return x if self.trivial else self._by_chain(self.root.T, x)
 
     @cached_property
     def tables(self) -> list[np.ndarray]:
@@ -194,8 +130,6 @@ class ChainedErrors(ReadOnlyArrays):
     @property
     def log_determinant(self) -> float:
         """Log determinant of the correlation matrix of all rows."""
-        if self.by_steps:
-            return float(np.sum(self._follows)) * float(np.log1p(-(self.memory.correlation**2)))
         logs = np.append(0.0, np.cumsum(np.log(np.diag(self.root))))
         return 0.0 if self.trivial else -2.0 * float(sum(logs[len(rows)] for rows in self.chains))
 
@@ -203,11 +137,6 @@ class ChainedErrors(ReadOnlyArrays):
     def known_from_others(self) -> np.ndarray:
         """Inverse (m,) of each error's conditional variance given the other errors of its chain."""
         out = np.ones(sum(len(rows) for rows in self.chains))
-        if self.by_steps and not self.trivial:
-            square = self.memory.correlation**2
-            beside = np.append(self._follows, False).astype(int) + np.insert(self._follows, 0, False)
-            out[self._order] = np.where(beside == 0, 1.0, (1.0 + square * (beside == 2)) / (1.0 - square))
-            return out
         for rows in self.chains if not self.trivial else ():
             n = len(rows)
             out[rows] = np.sum(self.root[:n, :n] ** 2, axis=0)
@@ -225,9 +154,7 @@ class ChainedEvidence(NamedTuple):
     value: float
     sizes: np.ndarray  #: (k,) derivatives by the logarithms of the sizes of the columns
     u: np.ndarray  #: (m,) derivatives by the logarithms of the uncertainties
-    memory: (
-        np.ndarray
-    )  #: (2,) derivatives by correlation and independent share; the latter is 0 where no share is independent
+    memory: np.ndarray  #: (2,) derivatives by correlation and independent share
 
 
 class Foretold(NamedTuple):
@@ -258,16 +185,12 @@ class Chained(ReadOnlyArrays):
         away, back = plain[:, 0] - plain[:, 1:] @ mean, errors.back(np.column_stack([left, spread]))
         by_u = back[:, 0] * away - 1.0 + np.einsum("ij,ij->i", back[:, 1:], plain[:, 1:])
         by_memory = np.zeros(2)
-        if not errors.trivial and errors.by_steps:
-            columns = plain[:, 1:]
-            both = np.column_stack([away, columns @ inverse]), np.column_stack([away, columns])
-            by_memory[0] = -0.5 * errors.by_correlation(*both)
-        elif not errors.trivial:
-            slopes = errors.root @ memory.slopes(len(errors.root)) @ errors.root.T
+        if not errors.trivial:
             inside = errors.products(np.column_stack([left, spread]), np.column_stack([left, white[:, 1:]]))
             lengths = np.array([len(rows) for rows in self.chains])
             inside -= np.diag(np.sum(lengths > np.arange(len(inside))[:, None], axis=1))
-            by_memory = 0.5 * np.einsum("kij,ij->k", slopes, inside)
+            turned = errors.root.T @ inside @ errors.root
+            by_memory = 0.5 * np.einsum("kij,ij->k", memory.slopes(len(turned)), turned)
         return ChainedEvidence(
             value=-0.5 * float(left @ white[:, 0]) - log,
             sizes=mean**2 + np.diag(inverse) - 1.0,
