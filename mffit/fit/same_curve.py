@@ -1,4 +1,4 @@
-"""Coefficients whose signs can change together without changing any force, and the signs that mffit writes."""
+"""Coefficients that can change together without changing any force, and the form that mffit writes."""
 
 from __future__ import annotations
 
@@ -75,8 +75,17 @@ def tyre_in_one_form(tyre: Tyre) -> Tyre:
 
 
 def with_expected_signs(values: Mapping[str, Any], expected: Mapping[str, float]) -> dict[str, float]:
-    """Coefficients to replace by their negatives, at the same forces, so that the first of each group has its expected sign."""
+    """Coefficients to replace, at the same forces, so that the first of each group has its expected sign.
+
+    The slip stiffness (PKX1 + PKX2 dfz) exp(PKX3 dfz) is the same to second order with -PKX2 and PKX3 + 2 PKX2 / PKX1: of the
+    two, the one whose exponent is nearer to the expected one.
+    """
     found: dict[str, float] = {}
+    if {"PKX2", "PKX3"} <= expected.keys():
+        PKX1, PKX2, PKX3 = (float(values[name]) for name in ("PKX1", "PKX2", "PKX3"))
+        away = PKX1 * (PKX3 - expected["PKX3"])
+        if abs(away + 2.0 * PKX2) < abs(away):
+            found = {"PKX2": -PKX2, "PKX3": PKX3 + 2.0 * PKX2 / PKX1}
     for group in SAME_CURVE:
         here = {name: found.get(name, float(values[name])) for name in group}
         if expected.get(group[0], 0.0) * here[group[0]] < 0.0:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from mffit.fit.same_curve import SAME_CURVE, with_expected_signs
 from tests.mffit.fit import combined_programme as belt
@@ -34,3 +35,16 @@ def test_a_curve_that_two_groups_reverse_has_one_form():
     true = dict(belt.truth().replace(RVY1=0.02, RVY2=-0.03, RVY3=0.1, RVY5=1.9, RVY6=12.0).values)
     names = ("RVY6", "RVY1", "RVY2", "RVY3")
     assert with_expected_signs({**true, **{n: -true[n] for n in names}}, true) == {n: true[n] for n in names}
+
+
+def test_a_slip_stiffness_over_load_has_one_form():
+    """Of two exponents with the same value, slope and curvature at nominal load, the one nearer to the expected one."""
+    true = belt.truth().replace(PKX1=22.0, PKX2=3.0, PKX3=-0.2)
+    twin = true.replace(PKX2=-3.0, PKX3=-0.2 + 6.0 / 22.0)
+    load = true["FNOMIN"] * (1.0 + np.array([-0.01, 0.0, 0.01]))
+    stiffness = np.array([one.state(load).K_xk / load for one in (true, twin)])
+    np.testing.assert_allclose(*stiffness, rtol=1e-6)
+    np.testing.assert_allclose(*np.diff(stiffness, 2), rtol=1e-2)
+    found = with_expected_signs(twin.values, dict(true.values))
+    assert found == {"PKX2": 3.0, "PKX3": pytest.approx(-0.2)}
+    assert with_expected_signs(true.values, dict(true.values)) == {}
