@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from mffit.brief import Brief
-from mffit.constants import NAMED_IN_SENTENCE, SAME_SIDESLIP
+from mffit.constants import NAMED_IN_SENTENCE, SAME_SIDESLIP, STRAIGHT, UPRIGHT
 from mffit.parts import constants
 from mffit.points import Points, levels
 from tir.frozen import ReadOnlyArrays
@@ -63,7 +63,7 @@ class Parts(ReadOnlyArrays, Brief):
     u_Mz_odd: np.ndarray  #: [Nm]
     paired: np.ndarray  #: "exact" | "interpolated" | "unpaired"
     partner: np.ndarray  #: index of the mirror, -1 if interpolated or unpaired
-    unpaired: tuple[str, ...]  #: one sentence per sweep with unpaired points
+    unpaired: tuple[str, ...]  #: one sentence per sweep with points whose mirror the programme lacks
     alpha_odd: np.ndarray  #: sideslip of the odd part [rad]: the reading, corrected for known play
 
     def among(self, points: Points, rows: np.ndarray) -> Parts:
@@ -94,7 +94,8 @@ def split(points: Points) -> Parts:
 
     The mirror of a point is a measured one within tolerance, if possible of the same sweep; otherwise readings are interpolated
     over alpha at the mirrored camber, or over gamma at the mirrored sideslip, within one condition and hardly beyond
-    its ends. On a straight path, which has no turn slip to remove, all points stay unpaired, without a remark.
+    its ends. On a straight path, which has no turn slip to remove, all points stay unpaired, without a remark, as do points
+    whose mirrored set-point was run but is not held closely enough.
     """
     n = len(points)
     partner = np.full(n, -1)
@@ -102,6 +103,7 @@ def split(points: Points) -> Parts:
     mirror = {name: np.full(n, np.nan) for name in READ}
     angles = np.degrees(np.column_stack([points.alpha, points.gamma]))
     tolerance = np.array([SAME_SIDESLIP, constants.SAME_CAMBER])
+    of_programme, lacking = np.array([STRAIGHT, UPRIGHT]), np.zeros(n, dtype=bool)
     for rows in conditions(points) if np.any(points.phi_t) else ():
         for i in rows.tolist():
             off = np.abs(angles[rows] + angles[i])
@@ -119,6 +121,7 @@ def split(points: Points) -> Parts:
                 )
                 values = next((line for line in along if line is not None), None)
                 paired[i] = "unpaired" if values is None else "interpolated"
+                lacking[i] = values is None and not np.any(np.all(off < of_programme, axis=1))
             for name, value in (values or {}).items():
                 mirror[name][i] = value
     Fy_odd, Mz_odd = (points.Fy - mirror["Fy"]) / 2.0, (points.Mz - mirror["Mz"]) / 2.0
@@ -131,16 +134,16 @@ def split(points: Points) -> Parts:
         u_Mz_odd=np.hypot(points.u_Mz, mirror["u_Mz"]) / 2.0,
         paired=paired,
         partner=partner,
-        unpaired=_sentences(points, (paired == "unpaired") & bool(np.any(points.phi_t))),
+        unpaired=_sentences(points, lacking),
         alpha_odd=points.alpha,
     )
 
 
-def _sentences(points: Points, unpaired: np.ndarray) -> tuple[str, ...]:
-    """A sentence per sweep about the points of the mask (n,)."""
+def _sentences(points: Points, lacking: np.ndarray) -> tuple[str, ...]:
+    """A sentence per sweep about the points of the mask (n,), which have no mirror."""
     out, most = [], NAMED_IN_SENTENCE
-    for k in np.unique(points.sweep[unpaired]):
-        rows = np.flatnonzero(unpaired & (points.sweep == k))
+    for k in np.unique(points.sweep[lacking]):
+        rows = np.flatnonzero(lacking & (points.sweep == k))
         shown = ", ".join(
             f"({np.degrees(points.alpha[i]):.2g}, {np.degrees(points.gamma[i]):.2g})" for i in rows[:most]
         )

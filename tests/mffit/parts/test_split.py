@@ -81,6 +81,15 @@ def test_the_parts_come_back_at_any_levels(levels):
     np.testing.assert_allclose(parts.Mz_even, -3.0, atol=1e-9)
 
 
+def test_a_mirrored_set_point_that_was_run_is_not_said_to_lack():
+    """Held a tenth of a degree apart, too far to be one reading; without the set-point, the programme lacks it."""
+    run, _, _ = sweep(np.array([-4.0, 4.1]))
+    found = split(run)
+    assert set(found.paired) == {"unpaired"}
+    assert found.unpaired == ()
+    assert len(split(run.select(np.array([True, False]))).unpaired) == 1
+
+
 def test_mirrors_are_found_up_to_the_ends_of_the_sweep():
     """Every point whose reflection lies within the measured angles, the outermost intervals included."""
     alpha_deg = np.array([-6.0, -4.0, -1.0, 0.5, 3.0, 5.0])
