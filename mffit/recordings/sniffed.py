@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -105,14 +105,13 @@ def sniff(
         A file cannot be read or lacks a required channel, a pattern matches no file, or a file is named twice. Of several
         sheets of a workbook, those that cannot be read are left out with a warning, unless it is all of them.
     """
-    files = [file for path in paths for file in files_of(path)]
-    if not files:
+    named = [file for path in paths for file in files_of(path)]
+    if not named:
         raise InputError("no file is named; name at least one recording")
-    twice = [file for k, file in enumerate(files) if file in files[:k]]
+    twice = [file for k, file in enumerate(named) if file in named[:k]]
     if twice:
         raise InputError("is named twice; remove one", file=twice[0])
-    named = files
-    files, summaries = apart([table for file in files for table in formats.tables_of(file)])
+    files, summaries = apart([table for file in named for table in formats.tables_of(file)])
     check_headings(headings, files)
 
     def of(file: Path) -> SniffedRecording:
@@ -122,51 +121,45 @@ def sniff(
     bad = bad_runs(summaries)
     if len(bad) == len(recordings):
         raise InputError(f"every run is bad, as {bad[0].why}", file=files[0])
-    tried = _first_axes(recordings)
-    found = _read_under(tried, recordings, bad)
-    reading, config = found.reading, found.config
-    of_summaries = [
+    found, config = _read_under_axes(recordings, bad)
+    two = [two_tyres.said(facts) for facts in two_tyres.find(found.points, config)][:1]
+    two = two or list(filter(None, [two_specimens(summaries)]))
+    warnings = (
+        *found.reading.warnings,
         *(f"{error} (this sheet is left out)" for error in refused),
         *(f"{each.recording} is left out: {each.why}" for each in bad),
-    ]
-    two = [two_tyres.said(facts) for facts in two_tyres.find(reading.points, config)][:1]
-    of_summaries += [moment_reversed.said(facts) for facts in moment_reversed.find(reading.points, config)]
-    two = two or [sentence for sentence in (two_specimens(summaries),) if sentence]
-    reading = reading._replace(warnings=(*reading.warnings, *of_summaries, *two))
-    return Sniffed(
-        found.recordings,
-        found.agreeing,
-        found.wrong,
-        reading,
-        conditions_of(found.recordings, reading),
-        bool(two),
-        bad,
-        evidence_of(reading.points, load_falls=tried == "sae"),
-        () if found.agreeing else reversible(reading.points, tried, load_falls=tried == "sae"),
+        *(moment_reversed.said(facts) for facts in moment_reversed.find(found.points, config)),
+        *two,
     )
+    return replace(found, reading=found.reading._replace(warnings=warnings), of_two_tyres=bool(two))
 
 
-class _ReadUnderAxes(NamedTuple):
-    """Recordings with their rolling directions, as read under axes that fit."""
-
-    recordings: tuple[SniffedRecording, ...]
-    config: Config
-    reading: Reading
-    agreeing: tuple[str, ...]  #: as :func:`axes_of` returns them
-    wrong: tuple[str, ...]
-
-
-def _read_under(axes: str, recordings: Sequence[SniffedRecording], bad: Sequence[BadRun]) -> _ReadUnderAxes:
-    """The recordings under these axes in the first directions in which they fit, else under the first axes that do."""
+def _read_under_axes(
+    recordings: Sequence[SniffedRecording], bad: tuple[BadRun, ...]
+) -> tuple[Sniffed, Config]:
+    """The recordings in the first rolling directions in which the likeliest axes agree with them, else under the first axes that
+    do; and the configuration of these directions under the likeliest axes, "sae" for negative loads and "iso" for others.
+    """
+    load_falls = any(r.guesses["Fz_N"].lower + r.guesses["Fz_N"].upper < 0.0 for r in recordings)
+    axes = "sae" if load_falls else "iso"
     for directed in _either_way(recordings):
         config = configuration_of(directed, axes, bad)
         reading = read(config, may_be_empty=True)
-        agreeing, wrong = axes_of(reading.points, axes, load_falls=axes == "sae")
+        agreeing, wrong = axes_of(reading.points, axes, load_falls=load_falls)
         if axes in agreeing:
             break
     if agreeing and agreeing[0] != axes:
         reading = read(configuration_of(directed, agreeing[0], bad), may_be_empty=True)
-    return _ReadUnderAxes(directed, config, reading, agreeing, wrong)
+    return Sniffed(
+        recordings=directed,
+        axes=agreeing,
+        wrong=wrong,
+        reading=reading,
+        conditions=conditions_of(directed, reading),
+        bad_runs=bad,
+        evidence=evidence_of(reading.points, load_falls=load_falls),
+        reversible=() if agreeing else reversible(reading.points, axes, load_falls=load_falls),
+    ), config
 
 
 def files_of(path: str | Path) -> list[Path]:
@@ -207,12 +200,6 @@ def _either_way(recordings: Sequence[SniffedRecording]) -> Iterator[tuple[Sniffe
             r._replace(backward=r.backward and not d) for r, d in zip(recordings, doubtful, strict=True)
         )
         yield tuple(recordings)
-
-
-def _first_axes(recordings: Sequence[SniffedRecording]) -> str:
-    """The axes to try first: "sae" if a recording has negative loads, else "iso"."""
-    negative = [r.guesses["Fz_N"].lower + r.guesses["Fz_N"].upper < 0.0 for r in recordings]
-    return "sae" if any(negative) else "iso"
 
 
 def configuration_of(recordings: Sequence[SniffedRecording], axes: str, bad: Sequence[BadRun] = ()) -> Config:
