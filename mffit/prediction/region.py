@@ -18,6 +18,7 @@ from mffit.points.points import of_si
 from mffit.prediction import constants
 from mffit.prediction.conditions import PATH, UNITS
 from mffit.prediction.predictor import Predictor
+from mffit.prediction.slopes import MissedSlope, missed_slopes
 from mffit.quantities import column
 from mffit.rig import Readings, Simulation
 from mffit.scatter import rms
@@ -51,6 +52,7 @@ class MissedAtReadings:
     largest: float  #: size of the channel's largest force in the file
     is_grip: bool  #: whether sweeps over the channel's own slip reach its grip
     region: MissedRegion | None  #: region of the largest model error; None if no region is significant
+    slopes: tuple[MissedSlope, ...] = ()  #: over the channel's own slip, at zero
 
 
 class _Seen(NamedTuple):
@@ -109,6 +111,7 @@ def missed_at_readings(
             largest=float(np.max(np.abs(force[name][read]), initial=1e-12)),
             is_grip=SLIP.get(name) in swept,
             region=_clearest(tuple(level), seen),
+            slopes=missed_slopes(known, fitted, points, name, SLIP[name]) if SLIP.get(name) in swept else (),
         )
     return found
 

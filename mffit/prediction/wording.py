@@ -34,8 +34,18 @@ def missed_sentence(found: MissedAtReadings, rival: str = "") -> str:
     limits = "the formula, not the readings" if not rival else f"the formula, or the readings ({rival})"
     return (
         f"what limits {name} is {limits}: alike in all sweeps it misses {found.size:.3g} {unit} rms, "
-        f"{100.0 * found.size / found.largest:.1f} % of the largest {name}{where}"
+        f"{100.0 * found.size / found.largest:.1f} % of the largest {name}{where}{_slopes(found)}"
     )
+
+
+def _slopes(found: MissedAtReadings) -> str:
+    """The slopes at zero slip that the file misses, in words; empty if it misses none."""
+    off = [
+        f"{number(100.0 * abs(one.share), digits=2)} % too {'low' if one.share > 0.0 else 'high'} at "
+        f"{CONDITIONS['Fz_N'].of(one.load)}"
+        for one in found.slopes
+    ]
+    return f"; its slope at zero slip is {listed(off)}" if off else ""
 
 
 def road_sentences(road: OnRoad, normal: str = "") -> list[str]:

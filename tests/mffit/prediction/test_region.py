@@ -9,6 +9,7 @@ from conftest import CAMBERS, LOADS, Built, brush
 import tir
 from mffit.prediction import MissedAtReadings, missed_sentence, region
 from mffit.prediction.region import SIDES, MissedRegion, _clearest, _Seen, missed_at_readings
+from mffit.prediction.slopes import MissedSlope
 
 NAMES = ("Fz", "p")
 PLAN = [(load, pressure) for load in (500.0, 1500.0, 2500.0) for pressure in (7e4, 1e5) for _ in range(4)]
@@ -91,6 +92,25 @@ def test_the_grip_of_a_foreign_tyre_is_missed_by_what_is_said(foreign: Built):
     middle = 0.5 * (found.region.lower + found.region.upper)
     assert np.mean(shares) == pytest.approx(middle, abs=0.03)
     assert np.sign(np.mean(shares)) == np.sign(middle)
+
+
+def test_the_slopes_of_a_foreign_tyre_are_missed_by_what_is_said(foreign: Built):
+    """The brush tyre's true slope at zero sideslip against that of the written file; 0.8 deg apart, its readings smooth it."""
+    tyre, end = tir.read(foreign.folder / "brush.tir"), np.radians([-0.4, 0.4])
+    slopes = foreign.result.missed["Fy"].slopes
+    assert [one.load for one in slopes] == pytest.approx(LOADS)
+    for one in slopes:
+        true = np.diff(brush(end, 0.0, one.load)[0]) / np.diff(tyre(one.load, alpha=end).Fy) - 1.0
+        assert 0.4 < one.share / float(true[0]) < 1.3
+
+
+def test_slopes_at_zero_slip_are_said_with_their_load():
+    found = MissedAtReadings(
+        "Fy", 33.4, 3340.0, True, None, (MissedSlope(530.0, 0.1), MissedSlope(1650.0, -0.023))
+    )
+    assert missed_sentence(found).endswith(
+        "1.0 % of the largest Fy; its slope at zero slip is 10 % too low at 530 N and 2.3 % too high at 1650 N"
+    )
 
 
 def said(channel: str, is_grip: bool, side: str, lower: float, upper: float, **over) -> str:
