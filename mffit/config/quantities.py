@@ -68,19 +68,18 @@ def _angle(lower: float, upper: float) -> AfterValidator:
 
 
 DEGREES = 180.0 / math.pi
-WheelRadius = Annotated[float, _length(0.03, 1.5, (0.1, 0.6))]
+WHEEL_RADII = length(0.03, 1.5, (0.1, 0.6))
+LOADS = Range(20.0, 2e5, "N", write="newtons", units={"kilonewtons": FORCE["kn"]})
+TYRE_PRESSURES = Range(20.0, 2000.0, "kPa", "", "kilopascals", PRESSURES, (20.0, 1000.0))
+WheelRadius = Annotated[float, AfterValidator(WHEEL_RADII)]
+Load = Annotated[float, AfterValidator(LOADS)]
+Pressure = Annotated[float, AfterValidator(TYRE_PRESSURES)]
 Width = Annotated[float, _length(0.01, 1.0)]
 PATH_RADII = (0.2, 100.0)
 """Smallest and largest radius of a path [m]."""
 PathRadius = Annotated[float, _length(*PATH_RADII)]
 Length = Annotated[float, _length(1e-3, 100.0)]
-Load = Annotated[
-    float, AfterValidator(Range(20.0, 2e5, "N", write="newtons", units={"kilonewtons": FORCE["kn"]}))
-]
 Temperature = Annotated[float, AfterValidator(Range(-40.0, 200.0, "degC"))]
-Pressure = Annotated[
-    float, AfterValidator(Range(20.0, 2000.0, "kPa", "", "kilopascals", PRESSURES, (20.0, 1000.0)))
-]
 Speed = Annotated[float, AfterValidator(Range(0.01, 150.0, "m/s", "write metres per second"))]
 EstimateAngle = Annotated[float, _angle(1.0, 60.0)]
 CamberLimit = Annotated[float, _angle(5.0, 70.0)]

@@ -16,15 +16,7 @@ USUAL_CONTACT_PATCH = Real(
     "m2",
     "Load over pressure, from motorcycles (0.006) to lorries (0.04): decides between units of pressure.",
 )
-LARGEST_LEVER_ARM_IN_FEET = Real(
-    0.4,
-    "-",
-    "Largest moment over largest load, both without units, below which American moments are in ft-lb: with lever arms of "
-    "20 to 60 mm it is 0.07 to 0.2 in feet and 0.8 to 2.4 in inches.",
-)
 TYRE_PRESSURES = Series((40.0, 1200.0), "kPa", "Pressures of tyres, from karts to lorries.")
-RADII_OF_TYRES = Series((0.1, 1.2), "m", "Unloaded radii, from karts to earth movers.")
-LOADS_OF_TYRES = Series((100.0, 100_000.0), "N", "Nominal loads, from karts to lorries.")
 TIME_BETWEEN_POINTS = Series(
     (5.0, 3600.0),
     "s",
@@ -47,7 +39,6 @@ ZERO_OF_A_DISC = Real(
     "Zero of the side force beyond which the path is likely curved: ply-steer and conicity move it by 0.3 deg, the alignment "
     "of a belt by 0.2 deg, a disc of 1.3 m radius by 1 to 2 deg.",
 )
-NEAR_STRAIGHT = Real(3.0, "deg", "Sideslip up to which the side force is nearly straight.")
 
 LOOKS_OF_PATIENCE = Count(
     10,

@@ -14,6 +14,7 @@ from mffit.points import Points
 from mffit.recordings import constants
 from mffit.recordings.recording import rolls_backward
 from mffit.recordings.sniffed import Sniffed
+from mffit.suspicion.constants import SIDESLIP_OF_SLOPES
 from mffit.sweeps import formats
 
 
@@ -44,7 +45,7 @@ def zero_of_upright(points: Points) -> float:
     alpha = np.degrees(points.alpha)
     near = (
         (np.abs(np.degrees(points.gamma)) < UPRIGHT)
-        & (np.abs(alpha) < constants.NEAR_STRAIGHT)
+        & (np.abs(alpha) < SIDESLIP_OF_SLOPES)
         & (points.direction > 0)
         & np.isfinite(points.Fy)
         & (points.Fz > 0.0)

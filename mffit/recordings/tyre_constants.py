@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.recordings import constants
+from mffit.config.quantities import LOADS, TYRE_PRESSURES, WHEEL_RADII, Range
 from mffit.sweeps.columns import numbers
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import UnknownUnitError, converted
@@ -20,16 +20,14 @@ class TyreConstant(NamedTuple):
     name: str  #: in the recording
     unit: str  #: of the key
     factor: float  #: from the constant to the key
-    limits: tuple[
-        float, ...
-    ]  #: plausible values of the key; programs write others where nothing was measured
+    accepted: Range  #: values that the key accepts; programs write others where nothing was measured
 
 
 TYRE_CONSTANTS = (
-    TyreConstant("unloaded_radius", "RFREE", "m", 1.0, constants.RADII_OF_TYRES),
-    TyreConstant("unloaded_radius", "OVALLDIA", "m", 0.5, constants.RADII_OF_TYRES),
-    TyreConstant("nominal_load", "FNOMIN", "N", 1.0, constants.LOADS_OF_TYRES),
-    TyreConstant("nominal_pressure", "NOMPRES", "kPa", 1.0, constants.TYRE_PRESSURES),
+    TyreConstant("unloaded_radius", "RFREE", "m", 1.0, WHEEL_RADII),
+    TyreConstant("unloaded_radius", "OVALLDIA", "m", 0.5, WHEEL_RADII),
+    TyreConstant("nominal_load", "FNOMIN", "N", 1.0, LOADS),
+    TyreConstant("nominal_pressure", "NOMPRES", "kPa", 1.0, TYRE_PRESSURES),
 )
 """Constants by TYDEX's names; of several for one key, the first counts."""
 
@@ -52,7 +50,7 @@ def stated_by(raw: RawTable) -> dict[str, StatedByFile]:
     for one in TYRE_CONSTANTS:
         heading = names.get(one.name, "")
         value = _value(one, raw, heading)
-        if one.key not in found and one.limits[0] <= value <= one.limits[-1]:
+        if one.key not in found and one.accepted.lower <= value <= one.accepted.upper:
             part = "half of " * (one.factor == 0.5)
             found[one.key] = StatedByFile(
                 float(f"{value:.6g}"), f"{part}{one.name} of {raw.path.name}", heading

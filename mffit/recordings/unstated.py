@@ -55,9 +55,13 @@ class Guess(NamedTuple):
         """The unit in which the file's readings are."""
         return self.unit or self.stated or self.channel.unit
 
+    def because(self, why: str) -> Guess:
+        """The same column with a further reason."""
+        return self._replace(why="; ".join(filter(None, (self.why, why))))
+
     def reversed(self, why: str) -> Guess:
         """The same column with the opposite sign in the file, for a reason."""
-        return self._replace(scale=-1.0, why="; ".join(filter(None, (self.why, why))))
+        return self.because(why)._replace(scale=-1.0)
 
     @property
     def column(self) -> Column:
@@ -183,6 +187,11 @@ class _Known(NamedTuple):
         return self.found[name].unit or (self.chosen[name].unit if name in self.chosen else "")
 
     @property
+    def longest_arm(self) -> float:
+        """Longest lever arm [m] of the side force that a contact allows, on a tyre of a middling size if its own is not known."""
+        return LARGEST_MOMENT_ARM * (self.radius or math.sqrt(math.prod(RADII)))
+
+    @property
     def load(self) -> float:
         """The largest load [N]; 0 if its unit is not yet chosen."""
         unit = self.unit("Fz_N")
@@ -281,15 +290,15 @@ def _time_per_degree(time: np.ndarray, alpha_deg: np.ndarray) -> float | None:
 def _american(known: _Known) -> tuple[dict[str, Choice], list[str]]:
     """American units for the columns without a stated unit, and a remark if these units are possible but not certain.
 
-    They are certain if some column can only be in an American unit and no stated unit or pressure is in another one. A
-    pressure in psi does not count, because rigs in Europe have gauges in psi, too, unless the moments are too large in N m.
+    They are certain if some column can only be in an American unit and no stated unit or pressure is in another one.
     """
-    found, chosen, _ = known
+    found = known.found
     of_file = [column for column in found.values() if column.unit and not column.given]
     stated = {column.channel.unit: column.unit for column in of_file}
+    arm = _lever_arm(known)
     doubtful = {
-        name: unit
-        for name in chosen
+        name: FOOT_POUNDS if unit == "in-lb" and _in(arm, "ft", "m") < known.longest_arm else unit
+        for name in known.chosen
         if (kind := found[name].channel.unit) in KINDS
         and kind not in stated
         and (unit := KINDS[kind].american)
@@ -298,27 +307,14 @@ def _american(known: _Known) -> tuple[dict[str, Choice], list[str]]:
     others = [unit for kind, unit in stated.items() if kind in KINDS and KINDS[kind].american]
     if "p_kPa" in found:
         others.append(known.unit("p_kPa"))
-    sign = next((column for name, column in found.items() if _only_american(name, known)), None)
-    moments = max((found[name].size for name in chosen if found[name].channel.unit == "N m"), default=0.0)
-    arm = moments / found["Fz_N"].size if "Fz_N" in found and found["Fz_N"].size else 0.0
-    psi = "p_kPa" in found and spelt(known.unit("p_kPa")) == spelt("psi")
-    if (
-        psi
-        and known.radius is not None
-        and arm > LARGEST_MOMENT_ARM * known.radius
-        and known.unit("Fz_N") == "N"
-    ):
-        sign = sign or found["p_kPa"]  # in newtons no contact has such a moment
+    sign = next((column for name, column in found.items() if _only_american(name, known, arm)), None)
     if sign is not None and all(spelt(unit) in AMERICAN for unit in others):
-        given = {}
-        for name, unit in doubtful.items():
-            column = found[name]
-            if unit == "in-lb" and arm < constants.LARGEST_LEVER_ARM_IN_FEET:
-                unit = FOOT_POUNDS
-            if column.channel.unit != "m" or unit in known.possible("m", column.middle):
-                why = f"{column.range} assumed to be in {unit}, as {sign.heading} ({sign.range}) is in American units"
-                given[name] = Choice(unit, why)
-        return given, []
+        why = f"as {sign.heading} ({sign.range}) is in American units"
+        return {
+            name: Choice(unit, f"{found[name].range} assumed to be in {unit}, {why}")
+            for name, unit in doubtful.items()
+            if found[name].channel.unit != "m" or unit in known.possible("m", found[name].middle)
+        }, []
     hint = next((name for name in found if spelt(known.unit(name)) in AMERICAN), None)
     if hint is None or not doubtful:
         return {}, []
@@ -331,15 +327,24 @@ def _american(known: _Known) -> tuple[dict[str, Choice], list[str]]:
     ]
 
 
-def _only_american(name: str, known: _Known) -> bool:
-    """Whether a column can only be in an American unit; psi does not count, because rigs in Europe use it, too."""
-    column = known.found[name]
+def _lever_arm(known: _Known) -> float:
+    """Largest moment without a stated unit over the largest load, as the file writes them; 0 without either."""
+    found, load = known.found, known.found["Fz_N"].size if "Fz_N" in known.found else 0.0
+    moments = [found[name].size for name in known.chosen if found[name].channel.unit == "N m"]
+    return max(moments, default=0.0) / load if load else 0.0
+
+
+def _only_american(name: str, known: _Known, arm: float) -> bool:
+    """Whether a column can only be in an American unit.
+
+    Rigs in Europe have gauges in psi, too, so psi counts only if the lever ``arm`` would be too long in newtons and metres.
+    """
+    column, kind = known.found[name], known.found[name].channel.unit
+    if name == "p_kPa" and spelt(known.unit(name)) == spelt("psi"):
+        return known.radius is not None and arm > known.longest_arm and known.unit("Fz_N") == "N"
     if column.unit:
-        return spelt(column.unit) in AMERICAN - {spelt("psi")}
-    kind = column.channel.unit
-    if kind not in ("degC", "m"):
-        return False
-    return list(known.possible(kind, column.middle)) == [KINDS[kind].american]
+        return spelt(column.unit) in AMERICAN
+    return kind in ("degC", "m") and list(known.possible(kind, column.middle)) == [KINDS[kind].american]
 
 
 def _turning(known: _Known) -> dict[str, Choice] | str:

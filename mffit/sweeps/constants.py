@@ -11,12 +11,6 @@ STANDSTILL = Real(
     "-",
     "Share of the usual speed below which the wheel stands: spring rates are run at a twentieth of it.",
 )
-CLOCK_WITHIN_STEP = Real(
-    0.5,
-    "-",
-    "Deviation of the time between two samples from the number of samples between them, in samples: above, their number is "
-    "another one.",
-)
 LIKENESS_OF_UNUSED_HEADING = Real(
     0.8, "-", "Similarity to a channel's name from which an unused column is pointed out."
 )
@@ -37,12 +31,4 @@ LARGEST_FALL_OF_GRIP = Real(
     "-",
     "Peak side force over load at the smallest load of a test over that at the largest: numbers in the names of columns that "
     "are loads keep within it, and numbers of wheels, which double from 1 to 2, do not.",
-)
-CAMBER_THAT_TURNS_LOAD = Real(
-    5.0, "deg", "Below this camber both definitions of the load agree within the rig's control."
-)
-STEADIER_LOAD_RATIO = Real(
-    0.5,
-    "-",
-    "A load column is vertical if it varies less than this times the load turned from the wheel plane.",
 )

@@ -172,7 +172,7 @@ def test_a_time_that_fits_no_unit_is_called_unknown():
 
 def test_one_american_unit_casts_doubt_on_unstated_ones():
     remark = " ".join(guessed(P=np.full(N, 12.0)).remarks)
-    for words in ("P is in psi", "FZ (N or lbf)", "MZ (N m or in-lb)", "mph", "degF", 'unit = "lbf"'):
+    for words in ("P is in psi", "FZ (N or lbf)", "MZ (N m or ft-lb)", "mph", "degF", 'unit = "lbf"'):
         assert words in remark
     assert not guessed().remarks
     stated = {"FZ": "N", "MZ": "N-m", "V": "kph", "TSTC": "deg C"}
@@ -401,7 +401,7 @@ file = "../a b.csv"
 [[sweep]]
 # N (3 to 3) is left out: at the speed in V, in m/s, km/h or mph, no wheel of this size turns at this rate
 # P is in psi, so columns without a stated unit may be in American units, too: FZ (N or lbf), FY (N or lbf), MZ (N m or \
-in-lb), V (km/h or mph); if they are, write the unit under [columns], for example Fz_N = { column = "FZ", unit = "lbf" }
+ft-lb), V (km/h or mph); if they are, write the unit under [columns], for example Fz_N = { column = "FZ", unit = "lbf" }
 file = "../c.csv"
 [sweep.columns]
 alpha_deg = "alpha_deg"
