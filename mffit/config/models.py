@@ -20,9 +20,11 @@ from mffit.config import uncertainty as stated
 from mffit.config.by_hand import Entries, as_in_the_file, check_coefficients, named
 from mffit.config.laboratory import LabTable
 from mffit.config.lines import ExcludeTable, check_exclusions
+from mffit.config.problems import shown
 from mffit.config.radii import effective_radius, path_radius
 from mffit.config.table import Table, list_of_tables
 from mffit.config.toml_file import line_of
+from mffit.errors import InputError
 from mffit.rig_errors import BY_NAME, CALIBRATED, DECLARED, Declared
 from tir.constants import EFFECTIVE_RADIUS_RANGE
 
@@ -369,6 +371,10 @@ class Config(Brief, Table):
     def line_of(self, key: str) -> int | None:
         """Line of a dotted key (``sweep.2.file`` for the third sweep), else of the table around it; None without either."""
         return line_of(key, self._lines)
+
+    def refusal(self, sentence: str, key: str) -> InputError:
+        """The error about a dotted key, such as ``sweep.2.file`` for the third sweep, with its line in the file."""
+        return InputError(sentence, file=self.path, line=self.line_of(key), key=shown(key, self._lines))
 
     @model_validator(mode="before")
     @classmethod

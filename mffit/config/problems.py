@@ -69,8 +69,8 @@ def validated(
     first = mistakes[0]
     solved = {first.key, *(mistake.meant for mistake in mistakes)}
     others = sorted({mistake.key for mistake in mistakes} - solved)
-    also = f" (also wrong: {', '.join(_shown(key, lines) for key in others)})" if others else ""
-    raise InputError(first.sentence + also, file=path, line=first.line, key=_shown(first.key, lines))
+    also = f" (also wrong: {', '.join(shown(key, lines) for key in others)})" if others else ""
+    raise InputError(first.sentence + also, file=path, line=first.line, key=shown(first.key, lines))
 
 
 def _mistake(detail: ErrorDetails, lines: dict[str, int], known: Keys) -> _Mistake:
@@ -98,7 +98,7 @@ def _key_at_fault(detail: ErrorDetails) -> str:
     return ".".join([*loc, *named])
 
 
-def _shown(key: str, lines: dict[str, int]) -> str:
+def shown(key: str, lines: dict[str, int]) -> str:
     """The key as a message gives it: ``sweep[3].file`` counts from 1; a single ``[table]`` is not counted."""
     table = key.partition(".")[0]
     if table in lines:

@@ -21,7 +21,7 @@ from mffit.points.levels import CAMBER, LOAD, PRESSURE, SIDESLIP, SPEED, LevelKi
 from mffit.points.slip_form import ROAD, Over, SlipForm, over_road, slip_form
 from mffit.scatter import ALARM, finite_median, robust
 from mffit.sweeps import Sweep
-from mffit.sweeps.standstill import standing
+from mffit.sweeps.columns import standing
 from mffit.sweeps.sweep import MeasuredRows
 from tir.constants import EFFECTIVE_RADIUS_RANGE
 from tir.errors import listed, some

@@ -27,22 +27,6 @@ ONE_CHANNEL = ("kPa", "m/s", "s")
 """Units that leave one channel; a temperature may be that of the air or the track instead."""
 NOT_THE_TYRES = re.compile(r"amb|umgeb|baro|atmos|hydr|air|wind", re.IGNORECASE)
 """Words in headings of pressures and speeds that are not the tyre's."""
-FORCE, MOMENT = "force|kraft", "moment|torque|couple"
-WORDS = {
-    "Fx_N": ("brak|brems|driv|antrieb|tracti|vortrieb|zug|longitud|längs|laengs|umfang", FORCE),
-    "Fy_N": ("side|lateral|corner|seite|quer", FORCE),
-    "Fz_N": ("vertical|vertikal|normal|wheel|rad|aufstand", f"{FORCE}|load|last"),
-    "Mz_Nm": ("align|rückstell|rueckstell|steer|lenk", MOMENT),
-    "Mx_Nm": ("overturn|kipp", MOMENT),
-    "My_Nm": ("roll", f"{MOMENT}|resist|widerstand"),
-    "alpha_deg": ("slip|side|schräg|schraeg", "angle|winkel"),
-    "gamma_deg": ("camber|inclin|sturz|neig", ""),
-    "p_kPa": ("infl|tyre|tire|reifen|füll|fuell|innen", "press|druck"),
-    "V_mps": ("belt|road|drum|track|bahn|band|trommel", "speed|veloc|geschw"),
-    "T_degC": ("tread|tyre|tire|surface|reifen|lauf|oberfl", "temp"),
-    "omega_radps": ("wheel|rad", "speed|rotat|rpm|dreh"),
-}
-"""By channel, words that say which one a heading names, and words of its kind, in which a heading without a unit has one, too."""
 BRAKING = re.compile("brak|brems", re.IGNORECASE)
 """Words in the heading of a force that is positive when braking."""
 ANGLE = re.compile(r"deg|rad|°")
@@ -107,9 +91,9 @@ def taken_for(column: FoundChannel) -> str:
 
 def named_alike(channel: Channel, raw: RawTable, taken: Collection[str]) -> list[str]:
     """The headings of numbers that are not taken and whose words fit the channel, in a unit of its kind or named as of it."""
-    if channel.name not in WORDS:
+    if not channel.words:
         return []
-    which, kind = (re.compile(words, re.IGNORECASE) for words in WORDS[channel.name])
+    which, kind = (re.compile(words, re.IGNORECASE) for words in (channel.words, channel.words_of_kind))
     in_unit = in_unit_of(channel, raw, taken)
     return [
         heading

@@ -19,10 +19,9 @@ from mffit.recordings.slip_definition import SLIP, slip_definition
 from mffit.recordings.unstated import Choice, FoundChannel, Guess, choices
 from mffit.sweeps.about import simplified
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel
-from mffit.sweeps.columns import numbers
+from mffit.sweeps.columns import numbers, standing
 from mffit.sweeps.frames import FORCES, MOMENTS, letter_of
 from mffit.sweeps.raw_table import RawTable
-from mffit.sweeps.standstill import standing
 from mffit.sweeps.units import converted, is_unit, spelt
 from mffit.sweeps.wide import FROM_NAMES
 

@@ -14,26 +14,10 @@ from mffit.recordings import constants
 from mffit.recordings.guess import candidates
 from mffit.sheets import WORKBOOKS, file_of
 from mffit.sweeps import formats
-from mffit.sweeps.about import SPECIMEN, simplified
+from mffit.sweeps.about import WORDS, simplified
 from mffit.sweeps.channels import BY_NAME
 from mffit.sweeps.columns import text_of
 from mffit.sweeps.raw_table import RawTable
-
-RUN = {
-    "run", "runs", "run_no", "run_nr", "run_number", "run_#", "file", "filename", "file_name", "recording", "test", "test_no",
-    "test_number", "datei", "dateiname", "messung", "messdatei", "versuch", "lauf", "nr",
-}  # fmt: skip
-QUALITY = {"quality", "quality_flag", "data_quality", "flag", "status", "result", "qualitaet", "bewertung"}
-GOOD_IF_TRUE = {"valid", "ok", "good", "gueltig", "i.o"}
-"""Headings of columns that say yes or no."""
-REMARK = {
-    "comment", "comments", "remark", "remarks", "note", "notes", "bemerkung", "bemerkungen", "kommentar",
-}  # fmt: skip
-BAD = {
-    "bad", "invalid", "reject", "rejected", "fail", "failed", "nok", "n.i.o", "nio", "not_ok", "aborted", "void", "schlecht",
-    "ungueltig", "verworfen", "abgebrochen",
-}  # fmt: skip
-NO = {"0", "0.0", "no", "n", "false", "nein"}
 
 
 class SummaryRow(NamedTuple):
@@ -119,7 +103,7 @@ def _raw_summary(file: Path) -> RawTable | None:
     except InputError:
         return None
     is_recording = all(candidates(raw, BY_NAME[channel]) for channel in ("alpha_deg", "Fy_N"))
-    return raw if RUN & _columns(raw).keys() and not is_recording else None
+    return raw if WORDS["run"] & _columns(raw).keys() and not is_recording else None
 
 
 def _columns(raw: RawTable) -> dict[str, str]:
@@ -134,23 +118,23 @@ def _rows(file: Path, recordings: Sequence[Path]) -> Iterator[SummaryRow]:
         return
     columns = _columns(raw)
 
-    def text(names: Iterable[str], row: int) -> str:
-        heading = next((columns[name] for name in reversed(columns) if name in names), None)
+    def text(kind: str, row: int) -> str:
+        heading = next((columns[name] for name in reversed(columns) if name in WORDS[kind]), None)
         return "" if heading is None else text_of(raw.column(heading)[row])
 
     for row, line in enumerate(raw.lines):
-        recording = _recording(text(RUN, row), recordings)
+        recording = _recording(text("run", row), recordings)
         if recording is not None:
-            bad = _bad(text(QUALITY, row), text(GOOD_IF_TRUE, row), text(REMARK, row))
-            yield SummaryRow(recording, f"{file.name}, line {int(line)}", bad, text(SPECIMEN, row))
+            bad = _bad(text("quality", row), text("good", row), text("remark", row))
+            yield SummaryRow(recording, f"{file.name}, line {int(line)}", bad, text("specimen", row))
 
 
 def _bad(quality: str, good: str, remark: str) -> str:
     """Why a run is bad, by its flags; "" if it is not."""
     flagged = []
-    if simplified(quality).rstrip(".!") in BAD:
+    if simplified(quality).rstrip(".!") in WORDS["bad"]:
         flagged.append(quality)
-    if simplified(good).rstrip(".!") in BAD | NO:
+    if simplified(good).rstrip(".!") in WORDS["bad"] | WORDS["no"]:
         flagged.append(f"not valid ({good})")
     return ", ".join(filter(None, [*flagged, remark])) if flagged else ""
 

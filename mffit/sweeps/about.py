@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Mapping
+from importlib import resources
 from pathlib import Path
 
 TYRE_IN_TITLE = re.compile(
@@ -11,12 +13,13 @@ TYRE_IN_TITLE = re.compile(
     re.IGNORECASE,
 )
 """The name of the tyre within a title, up to the title's next entry."""
-SPECIMEN = frozenset({
-    "tyre", "tire", "reifen", "tyre_name", "tire_name", "reifenname", "reifen_id", "specimen", "specimen_id", "specimen_no",
-    "specimen_serial", "serial", "serial_no", "serial_number", "tire_serial", "tyre_serial", "tire_id", "tyre_id", "tireid",
-    "tyreid", "tire_no", "tyre_no", "barcode", "pruefling", "seriennummer", "serien_nr", "reifennummer", "reifen_nr",
-})  # fmt: skip
-"""Headings, as :func:`simplified`, of columns that name the tyre."""
+WORDS: dict[str, frozenset[str]] = {
+    kind: frozenset(words)
+    for kind, words in tomllib.loads(
+        resources.files(__package__).joinpath("words.toml").read_text(encoding="utf-8")
+    ).items()
+}
+"""Words of laboratories by kind; headings among them are :func:`simplified`."""
 SPELLINGS = str.maketrans({" ": "_", "-": "_", "ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
 """Characters that headings spell in several ways, and one spelling for each."""
 SECTION_IN_TITLE = re.compile(r"\[[^\]]*\]")
@@ -30,7 +33,7 @@ def simplified(heading: str) -> str:
 
 def names_tyre(heading: str) -> bool:
     """Whether a column of this heading names the tyre of each row."""
-    return simplified(heading.strip()).rstrip(".") in SPECIMEN
+    return simplified(heading.strip()).rstrip(".") in WORDS["specimen"]
 
 
 def named_tyre(about: Mapping[str, str]) -> str:

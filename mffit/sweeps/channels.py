@@ -24,6 +24,8 @@ class Channel:
     below: str  #: usual cause of a value below the range
     above: str  #: usual cause of a value above the range
     aliases: tuple[str, ...]  #: headings that rigs use; they do not state a unit, so they are only suggested
+    words: str  #: pattern of the words by which a heading names it
+    words_of_kind: str  #: pattern of the words of its kind, which a heading without a unit has as well
     description: str
 
 

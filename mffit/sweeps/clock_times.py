@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.sweeps.raw_table import NO_READING, Cells, RawTable
+from mffit.sweeps.about import WORDS
+from mffit.sweeps.raw_table import Cells, RawTable
 
 CLOCK = re.compile(
     r"(\d{1,4}):(\d\d)(?::(\d\d))?(?:[.,:](\d+))?\s*([ap]\.?m\.?)?\s*(?:Z|UTC|[+-]\d\d:?\d\d)?$",
@@ -40,7 +41,9 @@ def with_clock_times(raw: RawTable) -> RawTable:
 
 def _seconds(cells: Cells) -> np.ndarray | None:
     """Seconds (n,), NaN where a cell is empty; None if the cells are not clock times, or all equal."""
-    filled = [(row, str(cell)) for row, cell in enumerate(cells) if str(cell).lower() not in NO_READING]
+    filled = [
+        (row, str(cell)) for row, cell in enumerate(cells) if str(cell).lower() not in WORDS["no_reading"]
+    ]
     found: list[_ClockTime] = []
     for _, cell in filled:
         clock = _clock(cell)

@@ -15,9 +15,9 @@ from mffit.config.models import Column
 from mffit.errors import InputError, shortened
 from mffit.quantities import CHANNELS, u_column
 from mffit.sweeps import constants
+from mffit.sweeps.about import WORDS
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel, nearest_channel, nearest_heading
 from mffit.sweeps.raw_table import (
-    NO_READING,
     Cells,
     RawTable,
     has_decimal_comma,
@@ -26,7 +26,6 @@ from mffit.sweeps.raw_table import (
     with_decimal_point,
     with_values,
 )
-from mffit.sweeps.standstill import standing
 from mffit.sweeps.units import UnknownUnitError, converted
 from tir.frozen import ReadOnlyArrays
 
@@ -129,6 +128,17 @@ def _without_standstill(raw: RawTable, headings: Mapping[str, str]) -> tuple[Raw
     if "time_s" in headings and "V_mps" in headings:
         rolls = ~standing(numbers(raw.column(headings["V_mps"])))
     return raw if np.all(rolls) else raw.of_rows(rolls), np.asarray(raw.lines)[~rolls]
+
+
+def standing(V: np.ndarray) -> np.ndarray:
+    """Mask (n,) of the samples at which the road stands, from its speed in any unit and with any sign; NaN is not a standstill.
+
+    The usual speed is that of the rolling wheel, so a recording may stand for most of its time.
+    """
+    speed = np.abs(V)
+    largest = np.max(speed, where=np.isfinite(speed), initial=0.0)
+    rolling = speed[speed > constants.STANDSTILL * largest]
+    return np.asarray(speed < constants.STANDSTILL * (np.median(rolling) if len(rolling) else 0.0))
 
 
 def _without_rows_that_are_none(raw: RawTable, headings: Mapping[str, str]) -> tuple[RawTable, list[str]]:
@@ -350,7 +360,9 @@ def _is_blank(cell: str | float) -> bool:
 
 def _is_gap(cell: str | float) -> bool:
     """Whether a cell is a text for a missing reading, or an empty cell of numbers."""
-    return not isinstance(cell, str) or cell.lower().lstrip("+-") in NO_READING or is_spreadsheet_error(cell)
+    if not isinstance(cell, str):
+        return True
+    return cell.lower().lstrip("+-") in WORDS["no_reading"] or is_spreadsheet_error(cell)
 
 
 def text_of(cell: str | float) -> str:

@@ -18,11 +18,11 @@ import numpy as np
 import pandas as pd
 
 from mffit.errors import InputError
+from mffit.sweeps.about import WORDS
 from mffit.sweeps.channels import SWEEP_CHANNELS
 from mffit.sweeps.extras import content_of
 from mffit.sweeps.grid import head_of, ragged, without_data
 from mffit.sweeps.raw_table import (
-    SPREADSHEET_ERRORS,
     THOUSANDS_WITH_COMMA,
     THOUSANDS_WITH_POINT,
     Cells,
@@ -39,7 +39,7 @@ HEAD = 65_536
 """Bytes at the start of a file that show separator, decimal comma and headings."""
 COMMENT = re.compile(
     rb"^[ \t]*#(?!(?:%s)[\t;|, ])[^\n]*"
-    % "|".join(re.escape(error[1:]) for error in sorted(SPREADSHEET_ERRORS)).encode(),
+    % "|".join(re.escape(error[1:]) for error in sorted(WORDS["spreadsheet_error"])).encode(),
     re.MULTILINE | re.IGNORECASE,
 )
 NUMBER_WITH_POINT = re.compile(r"[-+]?\d*\.\d*(?:[eE][-+]?\d+)?")

@@ -62,12 +62,7 @@ def load(config: Config) -> Sweeps:
     }
     read = [(file, file.columns, file.frame) for file in files.values() if file.columns and file.frame]
     if not read:
-        raise InputError(
-            "leaves out every reading; remove some entries",
-            file=config.path,
-            line=config.line_of("fit.exclude"),
-            key="fit.exclude",
-        )
+        raise config.refusal("leaves out every reading; remove some entries", "fit.exclude")
     found = [sweep for file in files.values() for sweep in file.sweeps]
     frames = {name: file.frame for name, file in files.items() if file.frame is not None}
     open_loads = [s for s in found if frames[s.file].forces_lean and frames[s.file].load_is_vertical is None]
@@ -172,36 +167,22 @@ def _once(warnings: Sequence[tuple[Path, str]]) -> list[str]:
     return said
 
 
-def _refusal(config: Config, index: int, sentence: str, key: str) -> InputError:
-    """The error about a key of a [[sweep]]."""
-    line = config.line_of(f"sweep.{index}.{key}")
-    return InputError(sentence, file=config.path, line=line, key=f"sweep[{index + 1}].{key}")
-
-
 def _raw(config: Config, index: int, entry: SweepTable) -> RawTable:
-    """The cells of a file."""
-
-    def refuse(sentence: str, key: str) -> InputError:
-        return _refusal(config, index, sentence, key)
-
-    for name in entry.columns:
-        if name not in BY_NAME:
-            raise refuse(unknown_channel(name), f"columns.{name}")
-    for name in config.columns:
-        if name not in BY_NAME:
-            key = f"columns.{name}"
-            raise InputError(unknown_channel(name), file=config.path, line=config.line_of(key), key=key)
+    for table, columns in ((f"sweep.{index}.columns", entry.columns), ("columns", config.columns)):
+        for name in columns:
+            if name not in BY_NAME:
+                raise config.refusal(unknown_channel(name), f"{table}.{name}")
     if not file_of(entry.file).name.lower().endswith(ENDINGS):
         *names, last = (kind.name for kind in FORMATS)
-        raise refuse(
+        raise config.refusal(
             f'"{entry.file}" is not in a known format ({" ".join(ENDINGS)}); export it as {", ".join(names)} or {last}',
-            "file",
+            f"sweep.{index}.file",
         )
     path = config.folder / entry.file
     if not file_of(path).exists():
-        raise refuse(
+        raise config.refusal(
             f'there is no file "{file_of(entry.file)}" in {config.folder.absolute()}; correct its name',
-            "file",
+            f"sweep.{index}.file",
         )
     return read(path)
 
@@ -236,9 +217,8 @@ def check_excluded(config: Config, file: str, lines: np.ndarray) -> None:
         ends = np.array(one.ranges).ravel() if one.file == file else np.array([], int)
         wrong = ends[~np.isin(ends, lines)]
         if len(wrong):
-            line, key = config.line_of(f"fit.exclude.{index}.lines"), f"fit.exclude[{index + 1}].lines"
             sentence = _no_reading(Path(file).name, lines, int(wrong[0]))
-            raise InputError(sentence, file=config.path, line=line, key=key)
+            raise config.refusal(sentence, f"fit.exclude.{index}.lines")
 
 
 def _no_reading(name: str, lines: np.ndarray, wrong: int) -> str:
@@ -286,10 +266,8 @@ def _columns(config: Config, index: int, entry: SweepTable, raw: RawTable) -> Co
         )
     except InputError as error:
         if error.file is None and error.key is not None:
-            if error.key.split(".")[1] in entry.columns:
-                raise _refusal(config, index, error.sentence, error.key) from None
-            line = config.line_of(error.key)
-            raise InputError(error.sentence, file=config.path, line=line, key=error.key) from None
+            own = f"sweep.{index}." if error.key.split(".")[1] in entry.columns else ""
+            raise config.refusal(error.sentence, own + error.key) from None
         raise
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from mffit.errors import InputError
+from mffit.sweeps.about import WORDS
 from tir.errors import counted
 from tir.frozen import ReadOnlyArrays
 
@@ -90,19 +91,6 @@ NUMBER_WITH_COMMA = re.compile(r"[-+]?(?:\d*|\d{1,3}(?:\.\d{3})+),\d+(?:[eE][-+]
 THOUSANDS_WITH_POINT = re.compile(r"[-+]?[1-9]\d{0,2}(?:\.\d{3})+")
 THOUSANDS_WITH_COMMA = re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+")
 
-SPREADSHEET_ERRORS = frozenset({
-    "#NV", "#N/A", "#N/V", "#DIV/0!", "#WERT!", "#VALUE!", "#BEZUG!", "#REF!", "#ZAHL!", "#NUM!", "#NAME?", "#NULL!",
-})  # fmt: skip
-
-
-NO_READING = ("", "nan", "inf", "infinity", "na", "n/a", "null", "notavail")
-"""Texts, in lower case, that recorders write in place of a missing reading."""
-SUMMARIES = frozenset({
-    "mittelwert", "mittel", "mean", "average", "avg", "median", "standardabweichung", "stdabw", "std", "stddev", "std.dev",
-    "min", "minimum", "max", "maximum", "summe", "sum", "total", "gesamt",
-})  # fmt: skip
-"""Words, in lower case, that mark a row of statistics in a spreadsheet, such as means."""
-
 
 def has_decimal_comma(cell: str) -> bool:
     """Whether a cell is a number with a decimal comma."""
@@ -116,12 +104,12 @@ def with_decimal_point(cell: str) -> str:
 
 def is_spreadsheet_error(cell: str) -> bool:
     """Whether a cell is a spreadsheet's error code, such as ``#NV``."""
-    return cell.upper() in SPREADSHEET_ERRORS
+    return cell.lower() in WORDS["spreadsheet_error"]
 
 
 def is_summary(cell: str) -> bool:
     """Whether a cell marks its row as statistics of the other rows."""
-    return cell.lower().rstrip(".: ") in SUMMARIES
+    return cell.lower().rstrip(".: ") in WORDS["statistics"]
 
 
 def without_commas(cell: str) -> str:
