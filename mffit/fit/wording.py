@@ -28,7 +28,7 @@ from mffit.measured import Measured
 from mffit.measured.wording import SOURCES
 from mffit.points import Points
 from mffit.quantities import CHANNELS
-from mffit.rig_errors import BESIDE, UNITS, WORDS, ZEROS, error_of, shown, unit_of, words_of
+from mffit.rig_errors import BESIDE, ZEROS, error_of, shown, unit_of, words_of
 from mffit.rounding import ascii_only, number, rounded, to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
 from tir.errors import listed
@@ -419,7 +419,7 @@ def remarks(
 def zeros_listed(rig: Mapping[str, tuple[float, float]]) -> str:
     """The fitted zeros of the rig in words, joined by commas."""
     return ", ".join(
-        f"{WORDS[name]} {to_uncertainty(value, u)} +- {to_uncertainty(u, u)} {UNITS[name]}"
+        f"{words_of(name)} {to_uncertainty(value, u)} +- {to_uncertainty(u, u)} {unit_of(name)}"
         for name, (value, u) in zeros_of_rig(rig).items()
     )
 

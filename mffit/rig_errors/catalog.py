@@ -60,7 +60,3 @@ BESIDE = (BY_NAME["p_ref_kPa"], BY_NAME["k_p_arm_per_kPa"])
 """Effects of the tyre over known conditions, for which the formula has no coefficient."""
 CALIBRATED = {error.acts_on[0]: declared.key for error, declared in DECLARED if error.is_gain}
 """By channel with a calibration, the key of ``[rig]`` that states its uncertainty."""
-UNITS = {error.name: error.unit for error in RIG_ERRORS}
-MEANINGS = {error.name: error.meaning for error in RIG_ERRORS}
-WORDS = {error.name: error.words for error in RIG_ERRORS if error.words}
-"""By name of a rig number, its words in sentences."""

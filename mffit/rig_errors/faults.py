@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from mffit.as_json import Estimates
-from mffit.rig_errors.catalog import BY_NAME, MEANINGS, RIG_ERRORS, UNITS, WORDS
+from mffit.rig_errors.catalog import BY_NAME, RIG_ERRORS
 from mffit.rig_errors.record import RigError
 
 OF_RUN = "@"
@@ -20,7 +20,7 @@ def number_of(name: str, part: str) -> str:
 
 def unit_of(name: str) -> str:
     """Unit of a rig number, for the whole test or one part."""
-    return UNITS[name.partition(OF_RUN)[0]]
+    return BY_NAME[name.partition(OF_RUN)[0]].unit
 
 
 def rig_estimates(numbers: Estimates) -> dict[str, object]:
@@ -30,14 +30,13 @@ def rig_estimates(numbers: Estimates) -> dict[str, object]:
 
 def meaning_of(name: str) -> str:
     """Formula, in words, of a rig number, for the whole test or one part."""
-    return MEANINGS[name.partition(OF_RUN)[0]]
+    return BY_NAME[name.partition(OF_RUN)[0]].meaning
 
 
 def words_of(name: str) -> str:
     """Words for a rig number, followed by its run or set-up; empty without words."""
-    error, _, part = name.partition(OF_RUN)
-    words = WORDS.get(error, "")
-    return f"{words}, {part}" if words and part else words
+    error, part = error_of(name), name.partition(OF_RUN)[2]
+    return ", ".join(filter(None, (error.words, part))) if error is not None and error.words else ""
 
 
 def shown(name: str, value: float, u: float) -> tuple[float, float, str]:

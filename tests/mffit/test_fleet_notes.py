@@ -10,7 +10,7 @@ import pytest
 from mffit.pipeline.fleet_notes import fleet_notes
 from mffit.pipeline.fleets import priors_of_fleet
 from mffit.quantities import CHANNELS
-from mffit.rig_errors import RIG_ERRORS, WORDS
+from mffit.rig_errors import RIG_ERRORS, words_of
 
 
 def rig(F0_N=0.0):
@@ -32,7 +32,7 @@ def test_a_fleet_that_agrees_has_no_notes():
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_a_rig_far_from_its_declaration_is_reported_in_declared_deviations(sign):
     (note,) = fleet_notes([row(), row("b")], [rig(F0_N=sign * 60.0)])
-    assert f"{WORDS['F0_N']}, 6 standard deviations" in note
+    assert f"{words_of('F0_N')}, 6 standard deviations" in note
     assert "direct method" in note
 
 
@@ -44,7 +44,7 @@ def test_every_error_of_the_rig_has_words_of_the_field(error):
 
 def test_a_tyre_on_a_changed_rig_is_named_with_its_worst_error():
     (note,) = fleet_notes([row(F0_N=-5.0, gamma_0_deg=9.0), row("b", F0_N=1.0)], [rig()])
-    assert note.startswith(f"a: its own error of the rig, {WORDS['gamma_0_deg']}, lies 9 standard")
+    assert note.startswith(f"a: its own error of the rig, {words_of('gamma_0_deg')}, lies 9 standard")
 
 
 def test_a_rig_far_from_its_declaration_does_not_blame_single_tyres():

@@ -27,7 +27,7 @@ import mffit
 import tir
 from mffit.points import make_points
 from mffit.rig import Simulation
-from mffit.rig_errors import WORDS
+from mffit.rig_errors import words_of
 from mffit.scatter import rms
 
 NOISE, RADIUS = (6.0, 0.3), 1.323
@@ -200,7 +200,7 @@ def one(job: harness.Job) -> Foreign:
         out.found = bool(spoilt) and any(spoilt in text for text in said)
         for key in PLANTED.get(fault, {}):
             value, u = result.fit.rig.get(NAMES[key], (0.0, 1.0))
-            out.found = any(WORDS[NAMES[key]] in text for text in said) or abs(value) > SAFE * u
+            out.found = any(words_of(NAMES[key]) in text for text in said) or abs(value) > SAFE * u
         out.open = any("misses whole sweeps" in text for text in result.trust.doubts)
         direct = result.measured.epsilon_gamma
         if direct is not None and isinstance(tyre, Brush):
