@@ -17,6 +17,7 @@ from mffit.report.figures import bands, decomposition, fit, missed, radii, resid
 from mffit.report.text.direct import PER_LOAD
 from mffit.report.verdict import headlines, judgement, purposes, verdict
 from mffit.results import BuildResult
+from mffit.suspicion import unpublished
 
 OTHERS = "EVERYTHING_ELSE"
 """The section of dimensions, ranges and nominal conditions."""
@@ -57,7 +58,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         of_residuals=of_residuals,
         per_load=PER_LOAD,
         degrees=math.degrees(1.0),
-        published=spin.SOURCE,
+        published=unpublished.SOURCE,
     )
 
 

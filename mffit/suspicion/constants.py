@@ -93,12 +93,6 @@ LIMITS_IN_DOUBT = Real(
     "-",
     "Share of the fitted coefficients at limits above which a file is in doubt: a fit to all that a tyre does has one or two.",
 )
-USUAL_PUBLISHED_EPSILON = Real(
-    -0.06, "-", "Mean camber reduction factor of six published tyres.", "Mottola and Massaro 2022, Table 2"
-)
-SPREAD_OF_PUBLISHED_EPSILON = Real(
-    0.084, "-", "Standard deviation of the factors of these six tyres.", "Mottola and Massaro 2022, Table 2"
-)
 LARGEST_PUBLISHED_EPSILON = Real(
     1.2,
     "-",

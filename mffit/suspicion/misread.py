@@ -17,7 +17,7 @@ from mffit.quantities import CONDITIONS, SIDEWAYS
 from mffit.rig import Simulation
 from mffit.scatter import robust, usual_size
 from mffit.suspicion import constants
-from mffit.suspicion.rereadings import MISTAKES, Away, ExplainingMistake, Mistake, explaining
+from mffit.suspicion.rereadings import Away, ExplainingMistake, Mistake, certain_mistakes, explaining
 from mffit.suspicion.rule import Outcome, When, rule
 
 
@@ -79,25 +79,18 @@ def misread_sweep(
     found = []
     for part, before in zip(parts, off, strict=True):
         others = [o for o in off if o is not before]
-        beyond = {
-            name: error
-            for name, error in before.items()
-            if error > constants.DISTRUSTED_MISFIT * max((o[name] for o in others if name in o), default=0.0)
-        }
+        worst = {name: max((o[name] for o in others if name in o), default=0.0) for name in before}
+        beyond = {n: e for n, e in before.items() if e > constants.DISTRUSTED_MISFIT * worst[n]}
         gross = {name: error for name, error in beyond.items() if error > constants.GROSS_SHARE}
-        if gross:
-            candidates, least = _candidates(part, points, signs), float(constants.GROSS_SHARE)
-        else:
-            gross, least = beyond, 0.0
-            rest = [other for other in parts if other is not part]
-            candidates = _confirmed_labels(part, points, signs, rest)
+        wrong, least = (gross, float(constants.GROSS_SHARE)) if gross else (beyond, 0.0)
         tolerated = {
-            n: max(constants.DISTRUSTED_MISFIT * usual[n], least, 0.0 if n in gross else before[n])
+            n: max(constants.DISTRUSTED_MISFIT * usual[n], least, 0.0 if n in wrong else before[n])
             for n in before
         }
-        best = explaining(candidates, gross, away, tolerated) if gross else None
+        candidates = _candidates(part, points, signs, () if gross else [p for p in parts if p is not part])
+        best = explaining(candidates, wrong, away, tolerated) if wrong else None
         if best is not None:
-            found.append(_named(part, best, max(gross.values())))
+            found.append(_named(part, best, max(wrong.values())))
     if len(found) == 1:
         yield found[0]
 
@@ -113,30 +106,6 @@ def _named(part: Points, best: ExplainingMistake, before: float) -> Misread:
         before=before,
         after=best.left,
     )
-
-
-def _candidates(part: Points, points: Points, signs: Mapping[str, float]) -> Iterator[tuple[Mistake, Points]]:
-    """Known mistakes and wrong labels, each with the points of a sweep corrected for it."""
-    others = points.select(points.sweep != part.sweep[0])
-    wrong_labels = (_wrong_labels(part, points, signs, *label) for label in levels.SETTINGS)
-    for mistake in (*(m for m in MISTAKES if m.beyond_doubt), *(m for some in wrong_labels for m in some)):
-        undone = mistake.undone(part, signs)
-        if mistake.certain(undone, others, by_formula=False):
-            yield mistake, undone
-
-
-def _confirmed_labels(
-    part: Points, points: Points, signs: Mapping[str, float], others: Sequence[Points]
-) -> Iterator[tuple[Mistake, Points]]:
-    """Wrong labels of those conditions of a sweep at or around which ``others`` confirm the model, with the corrected points."""
-    for label in levels.SETTINGS:
-        channel, _, kind = label
-        here = _held(part, channel)
-        alike = [_held(other, channel) for other in others if _differ_only_in(part, other, channel)]
-        near = _near(kind, here)
-        if any(x <= here + near for x in alike) and any(x >= here - near for x in alike):
-            for mistake in _wrong_labels(part, points, signs, *label):
-                yield mistake, mistake.undone(part, signs)
 
 
 def _held(part: Points, channel: str) -> float:
@@ -162,30 +131,44 @@ def _differ_only_in(part: Points, other: Points, channel: str) -> bool:
     )
 
 
-def _wrong_labels(
-    part: Points,
-    points: Points,
-    signs: Mapping[str, float],
-    channel: str,
-    column: str,
-    kind: levels.LevelKind,
-) -> Iterator[Mistake]:
-    """For every other level of a condition, the mistake that the sweep was run there and not at the level in its column."""
-    held = getattr(part, channel)
-    here = float(np.mean(held))
-    if levels.spread(held, kind):
-        return
-    for level in np.unique(np.round(levels.level_values(getattr(points, channel), kind), 9)):
-        if abs(level - here) > _near(kind, here):
-            word, _, unit = CONDITIONS[column][:3]
-            size = signs.get(channel, 1.0) * level * of_si(column)
-            run = f"{abs(size) if channel == 'Fz' else size:.4g} {unit}"
-            yield Mistake(
-                looks=f"run at a {word} of {run}",
-                column=column,
-                remedy=f"write the {word} that was run, {run}",
-                undone=partial(_moved, channel=channel, step=level - here),
-            )
+def _candidates(
+    part: Points, points: Points, signs: Mapping[str, float], confirming: Sequence[Points]
+) -> Iterator[tuple[Mistake, Points]]:
+    """The mistakes that may explain a sweep, each with the corrected points: known ones, and every other level of a condition at
+    which it may have been run.
+
+    With ``confirming`` sweeps, only levels of conditions at or around which these confirm the model.
+    """
+    if not confirming:
+        rest = points.select(points.sweep != part.sweep[0])
+        yield from certain_mistakes(part, signs, rest, by_formula=False)
+    for channel, column, kind in levels.SETTINGS:
+        held = getattr(part, channel)
+        here, size = float(np.mean(held)), _held(part, channel)
+        near = _near(kind, here)
+        if confirming:
+            alike = [_held(other, channel) for other in confirming if _differ_only_in(part, other, channel)]
+            if not (any(x <= size + near for x in alike) and any(x >= size - near for x in alike)):
+                continue
+        if levels.spread(held, kind):
+            continue
+        for level in np.unique(np.round(levels.level_values(getattr(points, channel), kind), 9)):
+            if abs(level - here) > near:
+                mistake = _run_at(channel, column, signs, here, float(level))
+                yield mistake, mistake.undone(part, signs)
+
+
+def _run_at(channel: str, column: str, signs: Mapping[str, float], here: float, level: float) -> Mistake:
+    """The mistake that a condition with the label ``here`` was run at another level."""
+    word, _, unit = CONDITIONS[column][:3]
+    size = signs.get(channel, 1.0) * level * of_si(column)
+    run = f"{abs(size) if channel == 'Fz' else size:.4g} {unit}"
+    return Mistake(
+        looks=f"run at a {word} of {run}",
+        column=column,
+        remedy=f"write the {word} that was run, {run}",
+        undone=partial(_moved, channel=channel, step=level - here),
+    )
 
 
 def _moved(points: Points, signs: Mapping[str, float], channel: str, step: float) -> Points:

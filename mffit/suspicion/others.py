@@ -23,7 +23,15 @@ from mffit.rig import Simulation
 from mffit.scatter import rms, usual_size
 from mffit.suspicion import constants
 from mffit.suspicion.groups import Group, confirmed_by_others, groups
-from mffit.suspicion.rereadings import MISTAKES, Away, Errors, Mistake, explaining, explanation, moved
+from mffit.suspicion.rereadings import (
+    Away,
+    Errors,
+    Mistake,
+    certain_mistakes,
+    explaining,
+    explanation,
+    moved,
+)
 from mffit.suspicion.rule import Facts, Outcome, When, rule
 from tir.frozen import ReadOnlyArrays
 
@@ -278,15 +286,9 @@ def _doubt(campaign: JudgedSweeps, group: Group, size: Mapping[str, float]) -> D
     gross = {e.channel: e.rms for e in errors if e.share > constants.GROSS_SHARE}
     rest = np.delete(np.arange(len(campaign.points)), group.index)
     others = campaign.points.select(rest, with_table=False)
-    undone = (
-        (mistake, read)
-        for mistake in MISTAKES
-        if gross and mistake.beyond_doubt
-        for read in [mistake.undone(part, campaign.signs)]
-        if mistake.certain(read, others, by_formula=True)
-    )
     away = partial(_away, part, fitted.simulation, found, {name: size[name] * load for name in found})
-    best = explaining(undone, gross, away, dict.fromkeys(found, constants.GROSS_SHARE))
+    candidates = certain_mistakes(part, campaign.signs, others, by_formula=True) if gross else ()
+    best = explaining(candidates, gross, away, dict.fromkeys(found, constants.GROSS_SHARE))
     errors.sort(key=lambda e: -e.ratio)
     doubt = Doubt(
         group.name,

@@ -6,7 +6,7 @@ A recording mistake is undone; an offset or gain of the rig is fitted to the err
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
@@ -159,6 +159,19 @@ MISTAKES: tuple[Mistake, ...] = (
     ),
 )
 """In order of preference, if several explain the errors equally well."""
+
+
+def certain_mistakes(
+    part: Points, signs: Signs, others: Points, *, by_formula: bool
+) -> Iterator[tuple[Mistake, Points]]:
+    """The mistakes that no sound tyre or rig looks like, each with the points of a sweep corrected for it.
+
+    ``others`` and ``by_formula`` are as in :meth:`Mistake.certain`.
+    """
+    for mistake in MISTAKES:
+        undone = mistake.undone(part, signs)
+        if mistake.beyond_doubt and mistake.certain(undone, others, by_formula=by_formula):
+            yield mistake, undone
 
 
 def moved(points: Points, errors: Errors, simulation: Simulation, changed: Points) -> dict[str, np.ndarray]:

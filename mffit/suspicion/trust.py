@@ -14,7 +14,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.special import chdtr, chdtrc, fdtrc, ndtr, ndtri
@@ -38,8 +38,8 @@ from mffit.rounding import rounded
 from mffit.scatter import EFFICIENCY, finite_median, rms
 from mffit.suspicion import constants
 from mffit.suspicion.others import Doubt
-from mffit.suspicion.rule import Outcome, Rule, When, rule
-from mffit.suspicion.unpublished import causes
+from mffit.suspicion.rule import Facts, Outcome, Rule, When, rule
+from mffit.suspicion.unpublished import OF_MOTORCYCLES, TYRES, causes
 from tir.errors import listed
 from tir.frozen import ReadOnlyArrays
 
@@ -220,7 +220,7 @@ of_measurement = partial(rule, when=When.MEASURED)
     "a standard uncertainty, and does not; the numbers are not those of the best fit; hold one of the coefficients at a limit "
     "under [coefficients]{held}, and build again",
 )
-def not_ended(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+def not_ended(fit: FinishedFit) -> Iterator[Facts]:
     """Fall of the sum of squares that an undamped step from the end of the search promises; 0 at a minimum."""
     if fit.left > constants.DOUBTFUL_SIGMA**2:
         names = ", ".join(held.name for held in fit.held)
@@ -233,7 +233,7 @@ def not_ended(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     sentence="the model misses {channel} by {ratio:.3g} times {noise}, most in {carriers}; {cause}; check these sweeps and the "
     "uncertainty, or run mffit diagnose",
 )
-def above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+def above_noise(fit: FinishedFit) -> Iterator[Facts]:
     """Scatter over the uncertainty, channel by channel, or a misfit that an effect explains better than model error.
 
     It contradicts an uncertainty that was stated. That of means of a recording is the scatter within each rest, and nobody said
@@ -254,7 +254,7 @@ def above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     sentence="the model misses {channel} of {sweep} by {ratio:.1f} times {noise}, which chance does not explain{others}{cause}; "
     "check this sweep or repeat it",
 )
-def sweep_above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+def sweep_above_noise(fit: FinishedFit) -> Iterator[Facts]:
     """Misfit of a sweep that contradicts all others over its stated noise, or over its scatter and the median sweep's misfit."""
     for name in fit.used:
         seen = _by_sweep(fit, name)
@@ -296,7 +296,7 @@ def _odd(fit: FinishedFit, channel: str) -> dict[int, OverNoise]:
     sentence="the model explains {percent:.0f} % of the variance of {channel}{where}; are these readings of free rolling at "
     "steady state, of one tyre and one rig, and their units and axes right?",
 )
-def unexplained(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+def unexplained(fit: FinishedFit) -> Iterator[Facts]:
     """Share of a channel's variance that the model explains, unless it is noise; without a stated one also of left-out sweeps."""
     for name, seen in fit.r2.items():
         share, where, out = seen, "", fit.left_out.get(name)
@@ -309,51 +309,34 @@ def unexplained(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 
 @of_model(
-    id="limit-against-the-data",
-    outcome=Outcome.DISTRUSTED,
-    sentence="a limit of the curves holds {name} against the readings ({sigma:.0f} standard deviations, {percent:.0f} % of the "
-    "misfit): no curve of the formula fits these sweeps; check what determines {name}",
+    id="held-against-the-data",
+    outcome=Outcome.GRADED,
+    sentence="{what} ({sigma:.2g} standard deviations, {percent:.0f} % of the misfit): {cure}",
 )
-def limit_against_data(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Misfit that is due to a physical limit of a coefficient, such as E <= 1, where the noise is stated."""
-    yield from (_against(held) for held in _holding(fit) if held.physical)
-
-
-@of_model(
-    id="bound-against-the-data",
-    outcome=Outcome.WARNED,
-    sentence="the readings ask for more of {name} than any published tyre has, at whose bound it is held ({sigma:.0f} standard "
-    "deviations, {percent:.0f} % of the misfit): check what determines {name}, or widen its bounds under [coefficients] with "
-    "{name} = {{ min = ..., max = ... }}",
-)
-def bound_against_data(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Misfit that is due to a bound that published tyres keep, where the noise is stated."""
-    yield from (_against(held) for held in _holding(fit) if not held.physical)
-
-
-def _holding(fit: FinishedFit) -> Iterator[HeldNumber]:
-    """The numbers that the readings certainly pull beyond a bound that nobody set by hand."""
-    for held in fit.held if _noise_is_stated(fit) else ():
-        certain = held.sigma > constants.CERTAIN_SIGMA and held.share > LEAST_PREDICTED_SHARE
-        if certain and not held.by_hand:
-            yield held
-
-
-def _against(held: HeldNumber) -> dict[str, Any]:
-    return {"name": held.name, "sigma": held.sigma, "percent": 100.0 * held.share}
-
-
-@of_model(
-    id="hand-against-the-data",
-    outcome=Outcome.WARNED,
-    sentence="the readings contradict what [coefficients] sets for {name} ({sigma:.1f} standard deviations, {percent:.0f} % of "
-    "the misfit): the other coefficients take up the difference; check {name}, or free it",
-)
-def hand_against_data(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Misfit that is due to a value or a bound that the engineer set."""
+def held_against_data(fit: FinishedFit) -> Iterator[Facts]:
+    """Misfit that is due to a value or bound set by hand or, where the noise is stated, to a bound of published tyres or a limit
+    of the curves, such as E <= 1; distrusted for such a limit.
+    """
+    stated = _noise_is_stated(fit)
     for held in fit.held:
-        if held.by_hand and held.sigma > constants.DOUBTFUL_SIGMA:
-            yield _against(held)
+        name = held.name
+        certain = stated and held.sigma > constants.CERTAIN_SIGMA and held.share > LEAST_PREDICTED_SHARE
+        if held.by_hand:
+            certain = held.sigma > constants.DOUBTFUL_SIGMA
+            what = f"the readings contradict what [coefficients] sets for {name}"
+            cure = f"the other coefficients take up the difference; check {name}, or free it"
+        elif held.physical:
+            what = f"a limit of the curves holds {name} against the readings"
+            cure = f"no curve of the formula fits these sweeps; check what determines {name}"
+        else:
+            what = (
+                f"the readings ask for more of {name} than any published tyre has, at whose bound it is held"
+            )
+            bounds = f"{name} = {{ min = ..., max = ... }}"
+            cure = f"check what determines {name}, or widen its bounds with {bounds} under [coefficients]"
+        if certain:
+            facts = {"what": what, "sigma": held.sigma, "percent": 100.0 * held.share, "cure": cure}
+            yield facts | {"asked": held.by_hand or not held.physical}
 
 
 @of_model(
@@ -361,7 +344,7 @@ def hand_against_data(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     outcome=Outcome.DISTRUSTED,
     sentence="the file breaks a physical limit: {problem}",
 )
-def limit_broken(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+def limit_broken(fit: FinishedFit) -> Iterator[Facts]:
     """Errors that `mffit check` finds in the written files."""
     yield from ({"problem": problem} for problem in fit.broken)
 
@@ -373,14 +356,14 @@ def limit_broken(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     "one tyre cannot be; if the rig was set up anew in between, give these sweeps setups of different names; if not, the axis "
     "moved, or a direction, path_centre or zero is wrong: check the zeros there",
 )
-def zeros_contradict(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
+def zeros_contradict(measured: JudgedMeasurement) -> Iterator[Facts]:
     """Sideslip zeros of one set-up, from forward and backward runs at all its loads and paths: they are one angle."""
     for z in measured.sideslip_zeros:
         if z.chance < ndtr(-constants.DOUBTFUL_SIGMA):
-            yield _apart(z) | {"asked": z.chance >= ndtr(-constants.CERTAIN_SIGMA)}
+            yield {**_apart(z), "asked": z.chance >= ndtr(-constants.CERTAIN_SIGMA)}
 
 
-def _apart(found: SideslipZeros) -> dict[str, Any]:
+def _apart(found: SideslipZeros) -> Facts:
     one, other = (
         f"{math.degrees(x.alpha_M.value):.3f} +- {math.degrees(x.alpha_M.u):.3f} deg at {x.load:.0f} N "
         f"(path centre {path_in_words(x.phi_t)})"
@@ -396,7 +379,7 @@ def _apart(found: SideslipZeros) -> dict[str, Any]:
     "{least}, though no temperature was recorded that would explain it; eps_gamma is corrected for it as far as zeros and camber "
     "sweeps were repeated; record T_degC, or warm the tyre up and mix the order of the runs",
 )
-def drift_between_sweeps(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
+def drift_between_sweeps(measured: JudgedMeasurement) -> Iterator[Facts]:
     """Forces of conditions without sideslip that several sweeps repeat, where temperatures are not known."""
     if measured.drift is not None and measured.drift.counts:
         yield measured.drift._asdict() | {"percent": 100.0 * measured.drift.apart}
@@ -409,7 +392,7 @@ def drift_between_sweeps(measured: JudgedMeasurement) -> Iterator[dict[str, Any]
     "usual tyre, with a relaxation length of {length:.2f} m, shifts them by {angle:.2f} deg{force}; the uncertainty holds that; "
     "sweep the other way, too, or slower over the road",
 )
-def sweeps_of_one_way(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
+def sweeps_of_one_way(measured: JudgedMeasurement) -> Iterator[Facts]:
     """Lag of a usual tyre where no sweep goes the other way, if it exceeds the usual ply-steer, which looks like it."""
     lag = measured.lag
     if lag is not None and abs(lag.angle) > usual_ply_steer():
@@ -424,17 +407,17 @@ def sweeps_of_one_way(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     outcome=Outcome.WARNED,
     sentence="eps_gamma = {value:.3f} +- {u:.3f} is outside everything published ({published}); likeliest causes: {causes}",
 )
-def unpublished(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
+def unpublished(measured: JudgedMeasurement) -> Iterator[Facts]:
     """Measured camber reduction factor against those of published tyres, of motorcycles alone if the tyre was leaned like one."""
-    row, margin = measured.nominal, constants.CERTAIN_SIGMA * constants.SPREAD_OF_PUBLISHED_EPSILON
+    row, margin = measured.nominal, constants.CERTAIN_SIGMA * OF_MOTORCYCLES.stdev
     if row is None or row.epsilon_gamma is None:
         return
     value, u = row.epsilon_gamma[:2]
-    usual = constants.USUAL_PUBLISHED_EPSILON
     leaned = bool(np.any(np.abs(measured.points.gamma) > CAMBER_OF_SLOPES.rad))
-    most = usual + margin if leaned else constants.LARGEST_PUBLISHED_EPSILON
-    if not usual - margin <= value <= most:
-        published = "motorcycle tyres lie between -0.19 and 0.02"
+    most = OF_MOTORCYCLES.mean + margin if leaned else constants.LARGEST_PUBLISHED_EPSILON
+    if not OF_MOTORCYCLES.mean - margin <= value <= most:
+        known = sorted(tyre.epsilon_gamma for tyre in TYRES)
+        published = f"motorcycle tyres lie between {known[0]:.2f} and {known[-1]:.2f}"
         published += "" if leaned else ", car tyres between 0.43 and 0.7, truck tyres about 1"
         found = causes(row, radius_counts=measured.radius_counts)
         yield {"value": value, "u": u, "published": published, "causes": found}
@@ -446,7 +429,7 @@ def unpublished(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     sentence="{count} of {free} fitted coefficients are at a limit or outside the range of usual tyres ({names}): these "
     "limits decide what the sweeps do not show of this tyre; give a base of a similar tyre ([tyre] base), or more conditions",
 )
-def many_at_limits(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+def many_at_limits(fit: FinishedFit) -> Iterator[Facts]:
     """Share of the fitted coefficients that bounds, physical limits or no published tyre would have."""
     if len(fit.at_limits) > constants.LIMITS_IN_DOUBT * fit.free:
         yield {"count": len(fit.at_limits), "free": fit.free, "names": ", ".join(fit.at_limits)}
@@ -458,7 +441,7 @@ def many_at_limits(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     sentence="{what} is {value} +- {u} {unit}, and has the other sign in all published tyres and rigs: it takes up something "
     "else; repeat a condition to see whether it is there",
 )
-def sign_of_no_other(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+def sign_of_no_other(fit: FinishedFit) -> Iterator[Facts]:
     """Sign of a temperature term or of a hysteresis, beyond what chance explains."""
     for name, (number, spread) in fit.rig.items():
         error = error_of(name)
@@ -474,7 +457,7 @@ def sign_of_no_other(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     sentence="the model misses {channel} by {ratio:.2g} times its stated uncertainty only, so that the readings and their "
     "uncertainty cannot be in the same unit: check the units of {column} and u_{column}",
 )
-def far_below_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+def far_below_noise(fit: FinishedFit) -> Iterator[Facts]:
     """Misfit of the model over the stated uncertainty, where it is smaller than chance and the numbers of the fit explain."""
     numbers = 0 if fit.linear is None else len(fit.linear.numbers)
     for name in fit.used:
@@ -486,25 +469,23 @@ def far_below_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="effect-in-the-residuals",
-    outcome=Outcome.WARNED,
-    sentence="the readings show more than was declared and fitted: {cause}; run mffit diagnose",
+    outcome=Outcome.GRADED,
+    sentence="the readings {what}: {cause}; {cure}",
 )
-def effect_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Score test of every effect beside the fitted numbers, where noise is stated or one effect explains most of the misfit."""
-    if _effect_is_left(fit) and not (fit.undeclared and _states(fit)):
-        yield {"cause": fit.cause}
-
-
-@of_model(
-    id="error-declared-absent",
-    outcome=Outcome.DISTRUSTED,
-    sentence="the readings contradict [rig], which declares as absent what the coefficients have taken up: {cause}; state "
-    "{key} as large as that, and the fit finds it",
-)
-def declared_absent(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """The same test of a rig error that has a key of its own, declared as exactly known."""
-    if _effect_is_left(fit) and fit.undeclared and _states(fit):
-        yield {"cause": fit.cause, "key": fit.undeclared}
+def effect_left(fit: FinishedFit) -> Iterator[Facts]:
+    """Score test of every effect beside the fitted numbers, where noise is stated or one effect explains most of the misfit;
+    distrusted for a rig error that [rig] declares as exactly known.
+    """
+    states = any(fit.misfit(name).n for name in fit.used)
+    reported = any(any(rule.find(fit)) for rule in (above_noise, sweep_above_noise))
+    if reported or not (fit.cause_is_certain and (states or fit.cause_is_most)):
+        return
+    what, cure = "show more than was declared and fitted", "run mffit diagnose"
+    declared = bool(fit.undeclared and states)
+    if declared:
+        what = "contradict [rig], which declares as absent what the coefficients have taken up"
+        cure = f"state {fit.undeclared} as large as that, and the fit finds it"
+    yield {"what": what, "cause": fit.cause, "cure": cure, "asked": not declared}
 
 
 @of_model(
@@ -512,7 +493,7 @@ def declared_absent(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     outcome=Outcome.WARNED,
     sentence="{channel} leaves more than noise: what the fit misses of it changes smoothly with {over}, {size:.3g} {unit} rms",
 )
-def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+def structure_left(fit: FinishedFit) -> Iterator[Facts]:
     """Evidence of model error, where the noise is stated and the model error is no more than it."""
     from mffit.linearised.inputs import word_of
 
@@ -530,7 +511,7 @@ def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     "differ in a condition that is not stated, such as pressure (p_kPa) or temperature (T_degC), or the formula misses them, "
     "and these sweeps do not tell which; state the condition, or repeat them",
 )
-def whole_sweeps(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+def whole_sweeps(fit: FinishedFit) -> Iterator[Facts]:
     """Misfit over the stated noise that is neither noise within the sweeps nor proven to be common to all of them."""
     for name, channel in fit.linear.channels.items() if fit.linear else ():
         beyond = fit.misfit(name).ratio > constants.MISFIT_IN_DOUBT and fit.beyond_scatter(name)
@@ -564,15 +545,12 @@ OF_READINGS = (above_noise, sweep_above_noise, unexplained)
 OF_TRUST = (
     not_ended,
     *OF_READINGS,
-    limit_against_data,
     limit_broken,
     zeros_contradict,
     drift_between_sweeps,
     sweeps_of_one_way,
     unpublished,
-    bound_against_data,
-    hand_against_data,
-    declared_absent,
+    held_against_data,
     many_at_limits,
     sign_of_no_other,
     far_below_noise,
@@ -581,17 +559,6 @@ OF_TRUST = (
     whole_sweeps,
 )
 """All rules of trust, the most serious first."""
-
-
-def _effect_is_left(fit: FinishedFit) -> bool:
-    """Whether an effect that no rule on the misfit has reported is certain, and where no noise is stated explains most of it."""
-    said = any(any(rule.find(fit)) for rule in (above_noise, sweep_above_noise))
-    return fit.cause_is_certain and (_states(fit) or fit.cause_is_most) and not said
-
-
-def _states(fit: FinishedFit) -> bool:
-    """Whether a used reading states its noise."""
-    return any(fit.misfit(name).n for name in fit.used)
 
 
 def _blamed_by(rule: Rule, fit: FinishedFit) -> bool:

@@ -1,12 +1,34 @@
-"""Likely causes of an implausible camber reduction factor, with the size that each would need."""
+"""The camber reduction factors of published tyres, and likely causes of one that is far from them."""
 
 from __future__ import annotations
 
 import math
+import statistics
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from mffit.measured import LoadResult
-from mffit.suspicion import constants
+
+
+class Published(NamedTuple):
+    """One measured tyre."""
+
+    name: str
+    epsilon_gamma: float  #: [-]
+    u: float  #: [-], k = 1
+
+
+SOURCE = "Mottola, M.; Massaro, M. Machines 2022, 10, 921, Table 2 (CC BY 4.0), doi:10.3390/machines10100921"
+TYRES = (
+    Published("Front 1 (120/70-17)", -0.0609, 0.0863),
+    Published("Front 2", -0.1245, 0.0951),
+    Published("Front 3", -0.1870, 0.1089),
+    Published("Rear 1 (190/55-17)", 0.0174, 0.0642),
+    Published("Rear 2", -0.0064, 0.0702),
+    Published("Rear 3", 0.0178, 0.0646),
+)
+OF_MOTORCYCLES = statistics.NormalDist.from_samples([tyre.epsilon_gamma for tyre in TYRES])
+"""Mean and standard deviation of their factors."""
 
 
 def causes(row: LoadResult, *, radius_counts: bool) -> str:
@@ -17,7 +39,7 @@ def causes(row: LoadResult, *, radius_counts: bool) -> str:
     angle to C_gamma.
     """
     assert row.epsilon_gamma is not None
-    rest, usual = 1.0 - row.epsilon_gamma.value, 1.0 - constants.USUAL_PUBLISHED_EPSILON
+    rest, usual = 1.0 - row.epsilon_gamma.value, 1.0 - OF_MOTORCYCLES.mean
     sign = f"a reversed sign of camber or path_centre (with the other sign it would be {1.0 + rest:.2f})"
     found = [*_radius(row, rest, usual, radius_counts), *_skew(row, rest, usual)]
     return "; ".join([sign, *found] if rest < 0.0 else [*found[:1], sign, *found[1:]])
@@ -46,5 +68,5 @@ def _skew(row: LoadResult, rest: float, usual: float) -> Iterator[str]:
         skew = math.degrees(row.C_gamma.value * (1.0 - usual / rest) / row.C_alpha.value)
         yield (
             f"a camber axis that is not square to the steering axis (camber_skew_deg would have to be {skew:+.1f} for a usual "
-            f"{constants.USUAL_PUBLISHED_EPSILON:.2f}; a backward camber sweep measures it)"
+            f"{OF_MOTORCYCLES.mean:.2f}; a backward camber sweep measures it)"
         )

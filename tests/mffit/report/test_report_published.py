@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mffit.report.figures.spin import TYRES
+from mffit.suspicion.unpublished import TYRES
 
 # Mottola and Massaro, Machines 2022, 10, 921, Table 1: turn-slip force [N] and its uncertainty.
 TABLE_1 = ((385.7, 31.4), (373.5, 31.6), (340.6, 31.2), (493.7, 32.2), (454.8, 31.7), (488.5, 32.1))
