@@ -10,7 +10,7 @@ from uncertainties import UFloat, ufloat
 
 from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.errors import InputError
-from mffit.measured import constants, wording
+from mffit.measured import wording
 from mffit.measured.axis import usual_stiffness
 from mffit.measured.result import Alignment, AlignmentStep
 from mffit.measured.zeros import WAYS, LoadGroup, force_at_zero, load_groups
@@ -24,7 +24,7 @@ def align(
     axes: str = "iso",
     C_alpha: float | None = None,
     measured: Mapping[float, Quantity] | None = None,
-    resolution_deg: float = constants.AXIS_RESOLUTION,
+    resolution_deg: float = 0.0,
 ) -> Alignment:
     """The next correction of the sideslip axis, in the rig's ``axes``, from forward and backward zeros.
 

@@ -7,8 +7,6 @@ from tir.constant import Count, Real
 GUESSED_STIFFNESS_U = Real(
     0.5, "-", "Relative standard uncertainty of the usual cornering stiffness: tyres have 5 to 25 1/rad."
 )
-AXIS_RESOLUTION = Real(0.01, "deg", "Smallest angle by which a sideslip axis can usually be turned.")
-
 USUAL_RELAXATION = Real(
     1.2,
     "-",
@@ -24,7 +22,6 @@ CUBIC_SIDESLIP = Real(2.0, "deg", "Sideslip up to which a cubic describes the od
 SLOPE_WITHOUT_CUBIC = Real(
     0.05, "-", "Relative difference of shapes assumed where too few points near zero allow a cubic."
 )
-
 
 SPIN_LOSS = Real(
     0.03,

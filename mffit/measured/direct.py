@@ -28,7 +28,6 @@ from mffit.measured.axis import (
 from mffit.measured.calibration import calibration, powers_of_load
 from mffit.measured.drift import shares_of_sweeps
 from mffit.measured.epsilon import (
-    LoadDependence,
     carried_by_file,
     corrected,
     epsilon_from_moments,
@@ -43,6 +42,7 @@ from mffit.measured.radii import effective_radius_at
 from mffit.measured.result import (
     NO_FIT,
     AfterFit,
+    LoadDependence,
     LoadResult,
     Measured,
     MeasuredFacts,
@@ -62,15 +62,8 @@ from mffit.scatter import ALARM
 from tir import Quantity, Tyre
 
 COMPLIANCE = BY_NAME["compliance_deg_per_Nm"]
-
-
 Judge = Callable[[MeasuredFacts], SpinStatement]
-"""Judges direct measurements before they are stated."""
-
-
-def without_judgement(_: MeasuredFacts) -> SpinStatement:
-    """No judgement: a build judges the whole result."""
-    return SpinStatement()
+"""Judges direct measurements before they are stated; without it a build judges its whole result."""
 
 
 def measure(
@@ -79,7 +72,7 @@ def measure(
     parts: Parts,
     base: Tyre | None = None,
     after: AfterFit = NO_FIT,
-    judge: Judge = without_judgement,
+    judge: Judge | None = None,
 ) -> Measured:
     """Stiffnesses, turn-slip force and eps_gamma at every load, from points with the angles as read; stiffnesses only on a flat
     track.
@@ -96,7 +89,8 @@ def measure(
     per_load = sorted([*measured, *_of_model_alone(after, measured)], key=lambda row: row.load)
     epsilons = {x.row.load: x.epsilon for x in of_loads if x.row is not None and x.epsilon is not None}
     row, law, notes, of_nominal = _at_nominal(evidence, per_load, epsilons)
-    stated, left = judge(MeasuredFacts(row, evidence.zeros, evidence.drift)), config.rig.u("alpha_0_deg")
+    stated = judge(MeasuredFacts(row, evidence.zeros, evidence.drift)) if judge else SpinStatement()
+    left = config.rig.u("alpha_0_deg")
     on_disc = None if law is None else row
     troubles = chain(*(said for *_, said in slopes), *(found.troubles for found in of_loads), of_nominal)
     of_setups = warnings_of_setups(points, row, evidence.scatter, config)
@@ -108,7 +102,6 @@ def measure(
         misaligned=on_disc is not None and on_disc.slips_beyond(left),
         notes=notes,
         warnings=(*stated.warnings, *parts.unpaired, *troubles, *of_setups),
-        load_note=law.note if law else "",
         setup_scatter=evidence.scatter,
         sideslip_zeros=evidence.zeros,
         drift=evidence.drift,

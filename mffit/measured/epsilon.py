@@ -14,8 +14,8 @@ from mffit.constants import CAMBER_OF_SLOPES, COVERAGE_FACTOR_95, LARGEST_CAMBER
 from mffit.measured import constants, wording
 from mffit.measured.camber_reduction import camber_reduction, true_camber_stiffness
 from mffit.measured.evidence import DirectEvidence
-from mffit.measured.result import CarriedEpsilon, LoadResult, Source
-from mffit.measured.stiffnesses import slope_at_zero, sweep
+from mffit.measured.result import CarriedEpsilon, LoadDependence, LoadResult, Source
+from mffit.measured.stiffnesses import OddCurve, sweep
 from mffit.measured.turning import Turning
 from mffit.measured.uncertain import combined
 from mffit.measured.zeros import LoadGroup, zeros
@@ -83,15 +83,13 @@ def epsilon_from_moments(
         return None
     u = np.where(np.isfinite(parts.u_Mz_odd), parts.u_Mz_odd, USUAL_U_MOMENT / math.sqrt(2.0))
     i = sweep(evidence.points, parts.Mz_odd, group, "gamma", evidence.config)
-    local, spread = CAMBER_OF_SLOPES.rad, float(constants.CURVATURE_SPREAD)
-    slope = slope_at_zero(evidence.points.gamma[i], parts.Mz_odd[i], u[i], local=local, curvature=spread)
-    return (
-        None
-        if slope is None
-        else float(
-            1.0 + r_e.n * slope.value / (math.copysign(moment.n * rig.R.n, moment.n * found.zeros.phi_t))
-        )
+    slope = OddCurve(evidence.points.gamma[i], parts.Mz_odd[i], u[i]).slope(
+        local=CAMBER_OF_SLOPES.rad, curvature=float(constants.CURVATURE_SPREAD)
     )
+    if slope is None:
+        return None
+    C_phit = math.copysign(moment.n * rig.R.n, moment.n * found.zeros.phi_t)
+    return float(1.0 + r_e.n * slope.value / C_phit)
 
 
 def carried_by_file(
@@ -107,22 +105,13 @@ def carried_by_file(
     measured = {"direct": row.epsilon_gamma, "debiased": row.epsilon_debiased or row.epsilon_gamma}
     pecp1 = measured.get(source) or fitted or row.epsilon_gamma
     assert pecp1 is not None
-    return CarriedEpsilon(source, pecp1, law.pecp2, law.u_pecp2)
-
-
-class LoadDependence(NamedTuple):
-    """PECP1 and PECP2 of eps_gamma(Fz) = PECP1 (1 + PECP2 dfz)."""
-
-    pecp1: float
-    pecp2: float
-    u_pecp2: float | None
-    note: str
+    return CarriedEpsilon(source, pecp1, law)
 
 
 def load_dependence(
     loads: Sequence[float], epsilon: Sequence[UFloat], nominal: int, Fz0: float
 ) -> LoadDependence:
-    """PECP1 and PECP2: eps_gamma at the nominal load (index ``nominal`` of the loads [N]), and a fitted slope over load.
+    """PECP2 from the slope of eps_gamma over the loads [N], relative to its value at that with index ``nominal``.
 
     Rig errors common to all loads are treated as correlated. PECP2 is not 0 only if slope and PECP1 clearly differ from zero
     and eps_gamma stays below its limit within the loads.
@@ -131,7 +120,7 @@ def load_dependence(
     pecp1 = float(at_nominal.nominal_value)
     others = [i for i in range(len(loads)) if i != nominal]
     if not others:
-        return LoadDependence(pecp1, 0.0, None, wording.ONE_LOAD)
+        return LoadDependence(0.0, None, wording.ONE_LOAD)
     x = np.array([[(loads[i] - loads[nominal]) / Fz0] for i in others])
     (law,) = combined([epsilon[i] - at_nominal for i in others], x).numbers
     slope, u = float(law.nominal_value), float(law.std_dev)
@@ -144,5 +133,5 @@ def load_dependence(
     elif most >= LARGEST_CAMBER_REDUCTION:
         why = wording.slope_too_steep(most)
     else:
-        return LoadDependence(pecp1, slope / pecp1, u_pecp2, wording.load_slope(slope / pecp1, u_pecp2))
-    return LoadDependence(pecp1, 0.0, u_pecp2, why)
+        return LoadDependence(slope / pecp1, u_pecp2, wording.load_slope(slope / pecp1, u_pecp2))
+    return LoadDependence(0.0, u_pecp2, why)

@@ -15,10 +15,10 @@ from mffit.measured.evidence import DirectEvidence
 from mffit.measured.radii import effective_radius_at
 from mffit.measured.result import LoadResult, PublishedResult, StepFromPaper
 from mffit.measured.stiffnesses import (
+    OddCurve,
     assumed_stiffness,
     camber_estimates,
     cornering_stiffness,
-    secant_at,
     sweep,
 )
 from mffit.measured.uncertain import quantity
@@ -46,7 +46,7 @@ def published(evidence: DirectEvidence, points: Points, row: LoadResult) -> Publ
     r_e = effective_radius_at(group.load, evidence.radii, evidence.base)
     camber = sweep(points, odd, group, "gamma", config)
     angle = math.radians(config.camber_stiffness.angle_deg)
-    secant = secant_at(points.gamma[camber], odd[camber], u_of(points, "Fy")[camber], angle)
+    secant = OddCurve(points.gamma[camber], odd[camber], u_of(points, "Fy")[camber]).secant(angle)
     raw = _at_zero(points, group.of(points.phi_t[group.index] == phi_t))
     if secant is None or raw is None or r_e is None:
         return None

@@ -240,13 +240,20 @@ Source = Literal["direct", "debiased", "model", "hand"]
 """Origins of PECP1 on a disc: the choices of ``[spin] pecp1``, and a value held in [coefficients]."""
 
 
+class LoadDependence(NamedTuple):
+    """PECP2 of eps_gamma(Fz) = PECP1 (1 + PECP2 dfz)."""
+
+    pecp2: float
+    u_pecp2: float | None
+    note: str  #: the value, or why it is 0
+
+
 class CarriedEpsilon(NamedTuple):
     """eps_gamma as the property file carries it."""
 
     source: Source
     pecp1: Quantity  #: at the nominal load; before a fit that frees PECP1, the direct value, from which it starts
-    pecp2: float
-    u_pecp2: float | None
+    over_load: LoadDependence
 
     @property
     def is_free(self) -> bool:
@@ -295,7 +302,6 @@ class Measured(Brief):
     misaligned: bool  #: whether alpha_M exceeds the alignment uncertainty; the fit then accounts for alpha_M
     notes: tuple[str, ...]  #: remarks that need no action
     warnings: tuple[str, ...]  #: warnings that need action
-    load_note: str = ""  #: the value of PECP2, or why it is 0
     setup_scatter: SetupScatter | None = None  #: None without repeated set-ups
     sideslip_zeros: tuple[SideslipZeros, ...] = ()  #: of every set-up with several zeros in both directions
     drift: Drift | None = None  #: None without repeated conditions, or if the temperature varies
@@ -332,11 +338,7 @@ class Measured(Brief):
 
     @property
     def pecp2(self) -> float:
-        return self.carried.pecp2 if self.carried else 0.0
-
-    @property
-    def u_pecp2(self) -> float | None:
-        return self.carried.u_pecp2 if self.carried else None
+        return self.carried.over_load.pecp2 if self.carried else 0.0
 
     @property
     def epsilon_gamma(self) -> Quantity | None:
@@ -385,11 +387,6 @@ class Measured(Brief):
     def budget(self) -> tuple[Contribution, ...]:
         return self.nominal.budget if self.nominal else ()
 
-    @property
-    def budgets(self) -> dict[str, tuple[Contribution, ...]]:
-        """Budgets of all other quantities at the nominal load, by their keys in JSON."""
-        return {KEYS[name]: rows for name, rows in self.nominal.budgets.items()} if self.nominal else {}
-
     def by_load(self, key: str) -> dict[float, float]:
         """One quantity by load [N], such as "C_alpha"."""
         found = {row.load: getattr(row, key) for row in self.per_load}
@@ -416,7 +413,8 @@ class Measured(Brief):
 keys(
     Measured,
     "**judged **at_nominal ±epsilon_gamma=epsilon_of_file ±epsilon_gamma_direct=epsilon_gamma epsilon_gamma_source "
-    "epsilon_gamma_model ±epsilon_gamma_debiased pecp1 pecp2 u_pecp2 budget budgets "
+    "epsilon_gamma_model ±epsilon_gamma_debiased pecp1 pecp2 "
+    "u_pecp2=carried.over_load.u_pecp2 budget budgets "
     "expanded=nominal.expanded ±camber_skew_deg misaligned=axis_off coverage_factor setups setup_scatter drift published notes "
     "per_load [made]",
     judged=lambda found: (
@@ -425,6 +423,9 @@ keys(
         else {"trusted": found.trusted, "reasons": found.reasons, "warnings": found.warnings}
     ),
     at_nominal=lambda found: found.nominal or NO_LOAD,
+    budgets=lambda found: (
+        {KEYS[n]: rows for n, rows in found.nominal.budgets.items()} if found.nominal else {}
+    ),
     epsilon_gamma_source=lambda found: found.carried and found.carried.source,
     coverage_factor=lambda _: 1,
     setups=lambda found: () if found.nominal is None else found.nominal.setups,
@@ -453,7 +454,7 @@ class Alignment(Brief):
 
     steps: tuple[AlignmentStep, ...]
     warnings: tuple[str, ...]
-    resolution_deg: float = field(default=constants.AXIS_RESOLUTION)
+    resolution_deg: float = 0.0
 
     @property
     def last(self) -> tuple[AlignmentStep, ...]:

@@ -42,72 +42,76 @@ class Secant(NamedTuple):
     u: float
 
 
-def slope_at_zero(
-    x: np.ndarray, y: np.ndarray, u: np.ndarray, *, local: float, curvature: float = 0.0
-) -> SlopeAtZero | None:
-    """Slope at zero of an odd curve; None if there are fewer than three angles.
+class OddCurve(NamedTuple):
+    """Odd part of a force or moment over an angle."""
 
-    ``x`` (n,) are angles > 0 [rad], ``y`` and ``u`` the odd part of the curve there and its standard uncertainties. A cubic
-    describes the curve up to the angle ``local`` [rad]. ``curvature`` is the prior standard deviation of the shape's curvature
-    E; 0 holds it at 0.
-    """
-    if len(np.unique(np.round(x, 4))) < 3:
-        return None
-    shape, u_noise, scatter = _saturating(x, y, u, curvature)
-    if not curvature:
-        # Misfit of the stiff shape at large angles must not count as scatter.
-        scatter = min(scatter, _saturating(x, y, u, float(constants.CURVATURE_SPREAD))[2])
-    scatter = max(1.0, scatter)
-    u_noise *= scatter
-    near = x <= local * 1.01
-    difference = constants.SLOPE_WITHOUT_CUBIC * abs(shape)
-    if len(np.unique(np.round(x[near], 4))) >= 3:
-        cubic, u_cubic = polynomial(x[near], y[near], u[near], (1, 3))
-        difference = math.sqrt(max((shape - cubic[0]) ** 2 - u_cubic[0] ** 2, 0.0))
-    return SlopeAtZero(shape, u_noise, float(difference / 2.0), max(1.0, len(x) - 3.0))
+    x: np.ndarray  #: (n,) angles > 0 [rad]
+    y: np.ndarray  #: (n,) odd part there
+    u: np.ndarray  #: (n,) its standard uncertainty
 
+    def slope(self, *, local: float, curvature: float = 0.0) -> SlopeAtZero | None:
+        """Slope at zero; None if there are fewer than three angles.
 
-def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Secant | None:
-    """Secant y/x at the angle [rad], interpolated between neighbours; None outside the sweep."""
-    reach = SAME_CAMBER.rad
-    if not len(x) or not x.min() - reach < angle < x.max() + reach:
-        return None
-    nearest = x[np.argmin(np.abs(x - angle))]
-    if abs(nearest - angle) < reach:
-        same = np.abs(x - nearest) < 1e-3
-        u_mean = float(np.linalg.norm(u[same])) / same.sum()
-        return Secant(float(np.mean(y[same] / x[same])), float(u_mean / nearest))
-    order = np.argsort(x)
-    value, u_value = (float(np.interp(angle, x[order], one[order]) / angle) for one in (y, u))
-    return Secant(value, u_value)
+        A cubic describes the curve up to the angle ``local`` [rad]. ``curvature`` is the prior standard deviation of the shape's
+        curvature E; 0 holds it at 0.
+        """
+        x, y, u = self
+        if len(np.unique(np.round(x, 4))) < 3:
+            return None
+        shape, u_noise, scatter = self._saturating(curvature)
+        if not curvature:
+            # Misfit of the stiff shape at large angles must not count as scatter.
+            scatter = min(scatter, self._saturating(float(constants.CURVATURE_SPREAD))[2])
+        near = x <= local * 1.01
+        difference = constants.SLOPE_WITHOUT_CUBIC * abs(shape)
+        if len(np.unique(np.round(x[near], 4))) >= 3:
+            cubic, u_cubic = polynomial(x[near], y[near], u[near], (1, 3))
+            difference = math.sqrt(max((shape - cubic[0]) ** 2 - u_cubic[0] ** 2, 0.0))
+        u_noise *= max(1.0, scatter)
+        return SlopeAtZero(shape, u_noise, float(difference / 2.0), max(1.0, len(x) - 3.0))
 
+    def secant(self, angle: float) -> Secant | None:
+        """Secant y/x at an angle [rad], interpolated between neighbours; None outside the sweep."""
+        x, y, u = self
+        reach = SAME_CAMBER.rad
+        if not len(x) or not x.min() - reach < angle < x.max() + reach:
+            return None
+        nearest = x[np.argmin(np.abs(x - angle))]
+        if abs(nearest - angle) < reach:
+            same = np.abs(x - nearest) < 1e-3
+            u_mean = float(np.linalg.norm(u[same])) / same.sum()
+            return Secant(float(np.mean(y[same] / x[same])), float(u_mean / nearest))
+        order = np.argsort(x)
+        value, u_value = (float(np.interp(angle, x[order], one[order]) / angle) for one in (y, u))
+        return Secant(value, u_value)
 
-def _saturating(x: np.ndarray, y: np.ndarray, u: np.ndarray, curvature: float) -> tuple[float, float, float]:
-    """Slope at zero, its standard error from ``u``, and the scatter of the points over ``u``, from a saturating curve.
+    def _saturating(self, curvature: float) -> tuple[float, float, float]:
+        """Slope at zero, its standard error from ``u``, and the scatter of the points over ``u``, from a saturating curve.
 
-    The curve is D sin(C atan(b - E (b - atan b))) with b = x s / (C D): odd, with slope s at zero and ceiling D.
-    """
-    first = np.argsort(x)[:3]
-    start = float(np.sum(x[first] * y[first]) / np.sum(x[first] ** 2))
-    top = max(float(np.max(np.abs(y))), 1e-9) * np.sign(start or 1.0)
-    numbers = [
-        FreeNumber("slope", 1.05, 0.2, 5.0),  # relative to its first estimate
-        FreeNumber("ceiling", 1.2, 0.7, 20.0),  # relative to the largest value
-        FreeNumber("C", 1.2, 0.3, 1.9, expected=1.2, spread=0.5),
-    ]
-    if curvature:
-        numbers.append(FreeNumber("E", 0.0, -6.0, 1.0, expected=0.0, spread=curvature))
+        The curve is D sin(C atan(b - E (b - atan b))) with b = x s / (C D): odd, with slope s at zero and ceiling D.
+        """
+        x, y, u = self
+        first = np.argsort(x)[:3]
+        start = float(np.sum(x[first] * y[first]) / np.sum(x[first] ** 2))
+        top = max(float(np.max(np.abs(y))), 1e-9) * np.sign(start or 1.0)
+        numbers = [
+            FreeNumber("slope", 1.05, 0.2, 5.0),  # relative to its first estimate
+            FreeNumber("ceiling", 1.2, 0.7, 20.0),  # relative to the largest value
+            FreeNumber("C", 1.2, 0.3, 1.9, expected=1.2, spread=0.5),
+        ]
+        if curvature:
+            numbers.append(FreeNumber("E", 0.0, -6.0, 1.0, expected=0.0, spread=curvature))
 
-    def curve(at: Mapping[str, Any]) -> Any:
-        D, C = at["ceiling"] * top, at["C"]
-        b = at["slope"] * start * x / (C * D)
-        bent = at["E"] * (b - np.arctan(b)) if curvature else 0.0
-        return D * np.sin(C * np.arctan(b - bent))
+        def curve(at: Mapping[str, Any]) -> Any:
+            D, C = at["ceiling"] * top, at["C"]
+            b = at["slope"] * start * x / (C * D)
+            bent = at["E"] * (b - np.arctan(b)) if curvature else 0.0
+            return D * np.sin(C * np.arctan(b - bent))
 
-    found = solve(of_model(curve, [number.name for number in numbers], y, u), numbers, tolerance=1e-9)
-    scatter = math.sqrt(found.cost / max(len(x) - 3, 1))
-    error = math.sqrt(found.covariance[0, 0])
-    return found.values["slope"] * start, error * abs(start), scatter
+        found = solve(of_model(curve, [number.name for number in numbers], y, u), numbers, tolerance=1e-9)
+        scatter = math.sqrt(found.cost / max(len(x) - 3, 1))
+        error = math.sqrt(found.covariance[0, 0])
+        return found.values["slope"] * start, error * abs(start), scatter
 
 
 CAMBER, BACKWARD_CAMBER = "camber stiffness", "camber stiffness backwards"
@@ -185,9 +189,9 @@ def cornering_stiffness(evidence: DirectEvidence, group: LoadGroup) -> UFloat | 
     """Slope of the side force over sideslip at zero [N/rad]; the secant if there are too few angles; None without either."""
     config, local = evidence.config, constants.CUBIC_SIDESLIP.rad
     i = sweep(evidence.points, evidence.odd_Fy, group, "alpha", config)
-    spread = float(constants.CURVATURE_SPREAD)
-    found = _estimates(evidence, i, evidence.odd_slip, evidence.odd_Fy, local, local, spread)
-    C_alpha = _number(found.slope or found.secant, "cornering stiffness")
+    curve = _curve(evidence, i, evidence.odd_slip, evidence.odd_Fy)
+    slope = curve.slope(local=local, curvature=float(constants.CURVATURE_SPREAD))
+    C_alpha = _number(slope or curve.secant(local), "cornering stiffness")
     if C_alpha is None or not config.rig.backlash_deg:
         return C_alpha
     return C_alpha * (1.0 + rest_of_play(config) / local)
@@ -237,29 +241,16 @@ def camber_estimates(
     i = sweep(evidence.points, evidence.odd_Fy, group, "gamma", config, direction)
     slope = 0.0 if C_alpha is None else C_alpha.nominal_value
     odd_Fy = evidence.odd_Fy - direction * slope * evidence.odd_slip
-    local, angle = CAMBER_OF_SLOPES.rad, math.radians(config.camber_stiffness.angle_deg)
-    return _estimates(evidence, i, evidence.points.gamma, odd_Fy, local, angle)
+    curve = _curve(evidence, i, evidence.points.gamma, odd_Fy)
+    secant = curve.secant(math.radians(config.camber_stiffness.angle_deg))
+    return Estimates(curve.slope(local=CAMBER_OF_SLOPES.rad), secant, float(curve.x.max(initial=0.0)))
 
 
-def _estimates(
-    evidence: DirectEvidence,
-    index: np.ndarray,
-    angle: np.ndarray,
-    odd: np.ndarray,
-    local: float,
-    at: float,
-    curvature: float = 0.0,
-) -> Estimates:
-    """Slope at zero and secant at the angle ``at`` [rad] of an odd curve: side force [N] over the angle (n,) [rad] at rows
-    ``index``.
-
-    ``local`` and ``curvature`` are as in :func:`slope_at_zero`.
-    """
-    u = evidence.parts.u_Fy_odd
-    u = np.where(np.isfinite(u), u, USUAL_U_FORCE / math.sqrt(2.0))
-    x, y, u = angle[index], odd[index], u[index]
-    slope = slope_at_zero(x, y, u, local=local, curvature=curvature)
-    return Estimates(slope, secant_at(x, y, u, at), float(x.max(initial=0.0)))
+def _curve(evidence: DirectEvidence, index: np.ndarray, angle: np.ndarray, odd: np.ndarray) -> OddCurve:
+    """The odd side force (n,) [N] over an angle (n,) [rad] at the rows ``index``."""
+    u = evidence.parts.u_Fy_odd[index]
+    usual = USUAL_U_FORCE / math.sqrt(2.0)
+    return OddCurve(angle[index], odd[index], np.where(np.isfinite(u), u, usual))
 
 
 def _chosen(config: Config, found: Estimates, load: float) -> tuple[SlopeAtZero | Secant | None, str | None]:

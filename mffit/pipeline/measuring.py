@@ -19,7 +19,7 @@ from mffit.config import Config
 from mffit.errors import InputError
 from mffit.made import Made, made
 from mffit.measured import Alignment, Measured, radius_readings
-from mffit.measured.direct import Judge, without_judgement
+from mffit.measured.direct import Judge
 from mffit.measured.result import NO_FIT, AfterFit, MeasuredFacts, SpinStatement
 from mffit.output import output_folder
 from mffit.parts import Parts
@@ -91,7 +91,7 @@ def align(
     *,
     axes: str | None = None,
     path_centre: str | None = None,
-    resolution_deg: float = direct.constants.AXIS_RESOLUTION,
+    resolution_deg: float = 0.0,
 ) -> Alignment:
     """Next steering correction from forward and backward zeros; see :func:`mffit.measured.align`.
 
@@ -120,9 +120,7 @@ def align(
     return direct.align(points, axes=axes or "iso", resolution_deg=resolution_deg)
 
 
-def _aligned(
-    config: Config, points: Points, resolution_deg: float = direct.constants.AXIS_RESOLUTION
-) -> Alignment:
+def _aligned(config: Config, points: Points, resolution_deg: float = 0.0) -> Alignment:
     points, stiffness = direct.at_the_axis(config, points, decomposition.split(points))
     return direct.align(points, axes=config.rig.axes, measured=stiffness, resolution_deg=resolution_deg)
 
@@ -132,7 +130,7 @@ def measure(
     points: Points,
     base: Tyre | None,
     after: AfterFit = NO_FIT,
-    judge: Judge = without_judgement,
+    judge: Judge | None = None,
 ) -> tuple[Parts, Measured]:
     """The odd and even parts of the points, and the direct measurements from those that roll freely, if there are any."""
     rolling = _rolling(points)

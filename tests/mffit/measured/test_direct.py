@@ -496,8 +496,8 @@ def test_a_parabola_through_many_zeros_is_read_at_zero():
 
 def test_the_note_on_load_is_one_of_the_notes():
     result = measured(Plain())
-    assert result.load_note.startswith("PECP2")
-    assert result.load_note in result.notes
+    assert result.carried.over_load.note.startswith("PECP2")
+    assert result.carried.over_load.note in result.notes
 
 
 def test_the_json_holds_value_and_uncertainty_of_every_quantity():

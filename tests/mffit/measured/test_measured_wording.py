@@ -8,7 +8,7 @@ from dataclasses import MISSING, fields, replace
 import pytest
 
 from mffit.measured import Contribution, LoadResult, Measured, wording
-from mffit.measured.result import CarriedEpsilon
+from mffit.measured.result import CarriedEpsilon, LoadDependence
 from tir import Quantity
 
 ANGLE, AXIS, TYRE = (
@@ -127,7 +127,7 @@ def at_one_load(budget=(), **more):
 
 def carrying(source, value):
     """A tyre with eps_gamma -0.1 +- 0.05, of which the finite spin adds 0.02, and a file that carries another value."""
-    file = CarriedEpsilon(source, Quantity(value, 0.03, "-"), 0.0, None)
+    file = CarriedEpsilon(source, Quantity(value, 0.03, "-"), LoadDependence(0.0, None, ""))
     debiased = Quantity(-0.12, 0.045, "-")
     return replace(at_one_load(epsilon_debiased=debiased), carried=file)
 
