@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Collection, Mapping
 from typing import Any, TypedDict
 
+from tir.equations.normalise import Switches
 from tir.errors import TirWarning
 from tir.parameters import TABLE, TURN_SLIP
 
@@ -35,9 +36,11 @@ def with_turn_slip(mode: float) -> float:
     return mode // 10.0 * 10.0 + 5.0
 
 
-def words(turn_slip: bool) -> str:
-    """The mode as it is written into exported files."""
-    return f"turn slip {'on' if turn_slip else 'off'}"
+def words(switches: Switches) -> str:
+    """The switches as they are written into exported files."""
+    also = ("slip and camber as tan(alpha), sin(gamma)", "inputs held to the file's ranges")
+    on = (text for text, chosen in zip(also, switches[1:], strict=True) if chosen)
+    return ", ".join([f"turn slip {'on' if switches.turn_slip else 'off'}", *on])
 
 
 def doubt(values: Mapping[str, Any], present: Collection[str]) -> str:

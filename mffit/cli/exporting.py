@@ -29,10 +29,10 @@ def _report(voice: Voice, written: list[Path], file: Path, turn_slip: bool | Non
     names = [str(path) for path in written]
     tyre = tir.read(file)
     voice.warn_of(file, tyre)
-    on = tyre.turn_slip if turn_slip is None else turn_slip
+    switches = tyre.switches(turn_slip=turn_slip)
     why = f"the file's USE_MODE is {tyre['USE_MODE']:g}" if turn_slip is None else "as asked for"
-    voice.say(f"written with {words(on)} ({why}): {', '.join(names)}")
-    voice.give({"written": names, "turn_slip": on, **more})
+    voice.say(f"written with {words(switches)} ({why}): {', '.join(names)}")
+    voice.give({"written": names, "turn_slip": switches.turn_slip, **more})
 
 
 def _code(write: Callable[..., Any], file: Path, out: Path, voice: Voice, **asked: Any) -> None:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Unpack
 
 import tir
 from mffit.errors import InputError
 from mffit.output import digest, output_folder
 from tir.codegen import c99, matlab
+from tir.codegen.program import Switches
+from tir.mode import SwitchOptions
 
 
 class CodeOfFile(NamedTuple):
@@ -18,7 +21,7 @@ class CodeOfFile(NamedTuple):
 
     tyre: tir.Tyre
     name: str  #: of the function, or prefix of the functions
-    turn_slip: bool
+    switches: Switches
     code: Any
 
 
@@ -27,10 +30,9 @@ def write_c(
     out: str | Path,
     *,
     name: str | None = None,
-    turn_slip: bool | None = None,
-    limits: bool = False,
     tunable: bool = False,
     transient: bool = False,
+    **switches: Unpack[SwitchOptions],
 ) -> list[Path]:
     """Write a property file as one C99 header and one source, see :func:`tir.export_c`.
 
@@ -40,10 +42,9 @@ def write_c(
     out : folder to write to
     name : of the files, and prefix of the functions; by default made from the name of the property file, with ``_turn_slip``
         or ``_normal`` behind it if turn slip is not as its USE_MODE says
-    turn_slip : whether spin acts; default: if the units digit of the file's USE_MODE is 5
-    limits : as in a call of the tyre
     tunable : also functions with the scaling factors and the temperature as arguments
     transient : also the lag of the contact, see :func:`tir.export_c`
+    switches : ``turn_slip``, ``star``, ``limits``, as in :func:`tir.export_c`
 
     Returns
     -------
@@ -57,20 +58,14 @@ def write_c(
     TirError
         The file cannot be read.
     """
-    path, switches = Path(path), {"limits": limits, "tunable": tunable, "lag": transient}
-    known = code_of(path, name, turn_slip, tir.export_c, c99.taken, **switches)
-    return _written(
-        path, Path(out), {f"{known.name}.h": known.code.header, f"{known.name}.c": known.code.source}
-    )
+    export = partial(tir.export_c, tunable=tunable, lag=transient)
+    known = code_of(Path(path), name, export, c99.taken, **switches)
+    texts = {f"{known.name}.h": known.code.header, f"{known.name}.c": known.code.source}
+    return _written(Path(path), Path(out), texts)
 
 
 def write_matlab(
-    path: str | Path,
-    out: str | Path,
-    *,
-    name: str | None = None,
-    turn_slip: bool | None = None,
-    limits: bool = False,
+    path: str | Path, out: str | Path, *, name: str | None = None, **switches: Unpack[SwitchOptions]
 ) -> list[Path]:
     """Write a property file as two MATLAB functions, see :func:`tir.export_matlab`: the tyre, and one with MFeval's columns.
 
@@ -81,7 +76,7 @@ def write_matlab(
     def export(tyre: tir.Tyre, **given: Any) -> matlab.MatlabCode:
         return tir.export_matlab(tyre, origin=f"From {path.name}, SHA-256 {digest(path)}", **given)
 
-    known = code_of(path, name, turn_slip, export, matlab.taken, limits=limits)
+    known = code_of(path, name, export, matlab.taken, **switches)
     texts = {f"{known.name}.m": known.code.function, f"{known.name}_mfeval.m": known.code.mfeval}
     return _written(path, Path(out), texts)
 
@@ -97,10 +92,9 @@ def _written(path: Path, out: Path, texts: Mapping[str, str]) -> list[Path]:
 def code_of(
     path: Path,
     given: str | None,
-    turn_slip: bool | None,
     export: Callable[..., Any],
     is_taken: Callable[[str], bool],
-    **switches: bool,
+    **switches: Unpack[SwitchOptions],
 ) -> CodeOfFile:
     """The code of a property file in a language; its name is the ``given`` one, or is made from the name of the file.
 
@@ -108,16 +102,17 @@ def code_of(
     not as the file's USE_MODE says, and ``tyre_`` in front if it does not begin with a letter or is a word of the language.
     """
     tyre = tir.read(path)
-    on = tyre.turn_slip if turn_slip is None else turn_slip
-    name = re.sub(r"[^A-Za-z0-9_]", "_", path.stem) + mode_suffix(tyre, on) if given is None else given
+    chosen = tyre.switches(**switches)
+    name = re.sub(r"[^A-Za-z0-9_]", "_", stem(path, tyre, chosen)) if given is None else given
     if given is None and (is_taken(name) or not re.match(r"[A-Za-z]", name)):
         name = f"tyre_{name}"
     try:
-        return CodeOfFile(tyre, name, on, export(tyre, name=name, turn_slip=on, **switches))
+        return CodeOfFile(tyre, name, chosen, export(tyre, name=name, **chosen._asdict()))
     except tir.TirError as error:
         raise InputError(error.sentence, file=path) from error
 
 
-def mode_suffix(tyre: tir.Tyre, on: bool) -> str:
-    """The end of the name of exported files, which says whether turn slip is on where the file's USE_MODE says otherwise."""
-    return "" if on == tyre.turn_slip else "_turn_slip" if on else "_normal"
+def stem(path: Path, tyre: tir.Tyre, switches: Switches) -> str:
+    """The name of exported files: that of the property file, and whether turn slip is on where its USE_MODE says otherwise."""
+    on = switches.turn_slip
+    return path.stem + ("" if on == tyre.turn_slip else "_turn_slip" if on else "_normal")

@@ -7,8 +7,9 @@ import tempfile
 import uuid
 import zipfile
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import mffit
 import tir
@@ -18,7 +19,7 @@ from mffit.export.code import CodeOfFile, code_of
 from mffit.output import output_folder
 from mffit.templates import environment
 from tir.codegen.c99 import taken
-from tir.mode import words
+from tir.mode import SwitchOptions, words
 
 DEFINITIONS: dict[int, tuple[str, ...]] = {2: (), 3: ("FMI3_OVERRIDE_FUNCTION_PREFIX",)}
 """Preprocessor definitions for a shared library, by version of FMI."""
@@ -34,10 +35,9 @@ def write_fmu(
     *,
     fmi: int = 2,
     name: str | None = None,
-    turn_slip: bool | None = None,
-    limits: bool = False,
     transient: bool = False,
     sources_only: bool = False,
+    **switches: Unpack[SwitchOptions],
 ) -> Path:
     """Write a property file as an FMU for model exchange and co-simulation.
 
@@ -50,7 +50,7 @@ def write_fmu(
     path : the property file
     out : folder to write ``<name>.fmu`` to
     fmi : 2 or 3, for FMI 2.0 or 3.0
-    name : model identifier; default, turn_slip and limits as in :func:`mffit.export.write_c`
+    name, switches : model identifier, turn_slip, star and limits, as in :func:`mffit.export.write_c`
     transient : with the lag of the contact (see :mod:`tir.transient`), for co-simulation: inputs are the slip speeds Vsx and Vsy
         instead of kappa and alpha, and damping; the deflections u and v are states, and outputs with kappa and alpha
     sources_only : without a binary; the program that imports the FMU compiles the sources
@@ -70,8 +70,9 @@ def write_fmu(
     if fmi not in DEFINITIONS:
         raise InputError(f"FMI {fmi} is not available, only {' and '.join(map(str, DEFINITIONS))}")
     path, out = Path(path), Path(out)
-    known = code_of(path, name, turn_slip, tir.export_c, taken, limits=limits, tunable=True, lag=transient)
-    name, files = known.name, _texts(known, path.name, fmi, limits=limits, transient=transient)
+    export = partial(tir.export_c, tunable=True, lag=transient)
+    known = code_of(path, name, export, taken, **switches)
+    name, files = known.name, _texts(known, path.name, fmi, transient=transient)
     if not sources_only:
         files[f"binaries/{compiler.host_folder(fmi)}/{name}{compiler.suffix()}"] = _binary(files, name, fmi)
     with output_folder(out, by="export", protected=[path]) as folder:
@@ -79,18 +80,18 @@ def write_fmu(
     return out / f"{name}.fmu"
 
 
-def _texts(known: CodeOfFile, file: str, fmi: int, *, limits: bool, transient: bool) -> dict[str, bytes]:
+def _texts(known: CodeOfFile, file: str, fmi: int, *, transient: bool) -> dict[str, bytes]:
     """The files of the archive by their path in it; ``file`` is the name of the property file."""
-    tyre, name, turn_slip, code = known
+    tyre, name, switches, code = known
     interface = variables.Interface.of(tyre, transient=transient)
-    use = f"{words(turn_slip)}{', inputs held to the ranges' if limits else ''}"
+    model = f"MF 6.2 {'with lag' if transient else 'in steady state'}"
     content = {
         "fmi": fmi,
         "name": name,
-        "title": f"{Path(file).stem}, {words(turn_slip)}",
+        "title": f"{Path(file).stem}, {words(switches)}",
         "version": mffit.__version__,
         "token": "{" + str(uuid.UUID(hashlib.sha256(f"{fmi} {code.source}".encode()).hexdigest()[:32])) + "}",
-        "description": f"Tyre {file}: MF 6.2 {'with lag' if transient else 'in steady state'}, {use}; axes ISO-W; {LATE}",
+        "description": f"Tyre {file}: {model}, {words(switches)}; axes ISO-W; {LATE}",
         "transient": transient,
         **interface._asdict(),
         "units": variables.units_of(x for part in interface for x in part),

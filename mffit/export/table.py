@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from types import MappingProxyType
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
 
 import tir
 from mffit.errors import InputError
 from mffit.export import constants
-from mffit.export.code import mode_suffix
+from mffit.export.code import stem
 from mffit.export.forms import FORMS, LookupTable
 from mffit.export.grid import Function, Grid, Ranges, grid_of
 from mffit.output import output_folder
 from mffit.progress import Progress, silent
 from mffit.quantities import column
 from mffit.tested import NO_FX, lacks_fx
-from tir.envelope import RANGES, box
-from tir.mode import words
+from tir.codegen.program import Switches
+from tir.correction import AXES
+from tir.envelope import SEARCHED, box
+from tir.mode import SwitchOptions, words
 
-CONDITIONS = {"Fz_N": "FZM", "alpha_deg": "ALPM", "gamma_deg": "CAMM", "kappa": "KPUM"}
-"""Axes of the tables in the order of a call of the tyre, with the beginning of the keys of their ranges."""
+CONDITIONS = ("Fz_N", "alpha_deg", "gamma_deg", "kappa")
+"""Axes of the tables in the order of a call of the tyre."""
 SIDEWAYS = ("Fz_N", "alpha_deg", "gamma_deg")
 PURE = {"Fx": ("Fz_N", "gamma_deg", "kappa"), **dict.fromkeys(("Fy", "Mx", "Mz"), SIDEWAYS)}
 """Channels and the axes of their tables in pure slip. My is left out: it depends on speed and jumps where the wheel locks."""
@@ -30,7 +34,7 @@ SLIPS = {"Fx": "kappa", "Fy": "alpha_deg"}
 """Channels with a slip stiffness, and the axis of the slip."""
 SMALL_STEP = 1e-6
 """Step of a central difference over the range of the slip."""
-COMBINED = dict.fromkeys(PURE, tuple(CONDITIONS))
+COMBINED = dict.fromkeys(PURE, CONDITIONS)
 
 
 class LookupTables(NamedTuple):
@@ -46,10 +50,10 @@ def write_table(
     out: str | Path,
     *,
     form: str,
-    turn_slip: bool | None = None,
     error: float = constants.TABLE_ERROR,
-    ranges: Mapping[str, tuple[float, float]] | None = None,
+    ranges: Ranges = MappingProxyType({}),
     progress: Progress = silent,
+    **switches: Unpack[SwitchOptions],
 ) -> LookupTables:
     """Write a property file as lookup tables of Fx, Fy, Mx and Mz on a straight path, at the file's speed and pressure.
 
@@ -58,11 +62,11 @@ def write_table(
     path : the property file
     out : folder to write to
     form : ``csv`` or ``mat``: pure and combined slip, in ISO-W axes, N, Nm and degrees
-    turn_slip : whether spin by camber acts; default: if the units digit of the file's USE_MODE is 5
     error : largest error of linear interpolation between nodes, over the largest value of the channel
     ranges : lowest and highest value of ``Fz_N``, ``alpha_deg``, ``gamma_deg``, ``kappa``, within those of the file; default:
         those of the file, to 60 deg of camber and 30 deg of sideslip
     progress : called with a sentence at each step
+    switches : ``turn_slip``: whether spin by camber acts; ``star``, ``limits``; as in :func:`tir.export_c`
 
     Returns
     -------
@@ -79,19 +83,15 @@ def write_table(
     path, out = Path(path), Path(out)
     _refuse_unusable(form, error)
     tyre = tir.read(path)
-    on = tyre.turn_slip if turn_slip is None else turn_slip
-    inside = _ranges(tyre, path, ranges or {})
-    tables, warnings = _tables(tyre, on, inside, error, progress)
+    chosen = tyre.switches(**switches)
+    tables, warnings = _tables(partial(_force, tyre, chosen), _ranges(tyre, path, ranges), error, progress)
     wrong = [table.heading for table in tables if not np.isfinite(table.grid.largest)]
     if wrong:
         raise InputError(f"{wrong[0]} is not a number everywhere in the ranges; see mffit check", file=path)
     at = f"straight path, {tyre['LONGVL']:g} m/s, {tyre['INFLPRES'] / 1e3:g} kPa"
-    about = f"{path.name}, {words(on)}, {at}; ISO-W axes, degrees, N, Nm"
-    if lacks_fx(tyre):
-        about += f"; {NO_FX}"
-    stem = path.stem + mode_suffix(tyre, on)
+    about = f"{path.name}, {words(chosen)}, {at}; ISO-W axes, degrees, N, Nm" + f"; {NO_FX}" * lacks_fx(tyre)
     with output_folder(out, by="export", protected=[path]) as folder:
-        names = FORMS[form](folder, stem, about, tables)
+        names = FORMS[form](folder, stem(path, tyre, chosen), about, tables)
     return LookupTables([out / name for name in names], tables, warnings)
 
 
@@ -102,32 +102,31 @@ def _refuse_unusable(form: str, error: float) -> None:
         raise InputError(f"an error of {100.0 * error:g} % is not between 0 and 100 %", key="--error")
 
 
-def _force(tyre: tir.Tyre, channel: str, on: bool) -> Function:
-    """The channel as a function of the conditions by their columns; those not given are zero."""
-
-    def force(Fz_N: Any, alpha_deg: Any = 0.0, gamma_deg: Any = 0.0, kappa: Any = 0.0) -> Any:
-        forces = tyre(Fz_N, np.radians(alpha_deg), np.radians(gamma_deg), kappa, turn_slip=on)
-        return getattr(forces, channel)
-
-    return force
+def _force(tyre: tir.Tyre, switches: Switches, channel: str, **at: Any) -> Any:
+    """The channel at conditions by their columns; those not given are zero."""
+    inputs = {AXES[name][0]: AXES[name][1] * x for name, x in at.items()}
+    return getattr(tyre(**inputs, **switches._asdict()), channel)
 
 
 def _tables(
-    tyre: tir.Tyre, on: bool, inside: Ranges, error: float, progress: Progress
+    force: Callable[..., Any], inside: Ranges, error: float, progress: Progress
 ) -> tuple[list[LookupTable], list[str]]:
-    """The tables of a tyre, and sentences on those that miss the goal or are left out; they end at one that is not a number."""
+    """Tables of a function of channel and conditions, and sentences on those that miss the goal or are left out.
+
+    They end at one that is not a number.
+    """
     tables: list[LookupTable] = []
     warnings = []
     wanted = [*PURE.items(), *COMBINED.items()]
     for k, (channel, axes) in enumerate(wanted):
         name = channel + "_combined" * (k >= len(PURE))
         progress(f"table of {name}")
-        grid = grid_of(_force(tyre, channel, on), {axis: inside[axis] for axis in axes}, error)
+        grid = grid_of(partial(force, channel), {axis: inside[axis] for axis in axes}, error)
         if not grid.axes and np.isfinite(grid.largest):
             warnings.append(f"{name} does not depend on {', '.join(axes)}: no table")
             continue
         held = {axis: 0.0 for axis in CONDITIONS if axis not in axes}
-        slope = _slope_error(_force(tyre, channel, on), SLIPS.get(channel, ""), grid)
+        slope = _slope_error(partial(force, channel), SLIPS.get(channel, ""), grid)
         tables.append(LookupTable(name, column(channel), grid, held | grid.held, slope))
         if not np.isfinite(grid.largest):
             break
@@ -171,24 +170,22 @@ def _slope_error(force: Function, slip: str, grid: Grid) -> tuple[float, float] 
 
 def _ranges(tyre: tir.Tyre, path: Path, asked: Ranges) -> dict[str, tuple[float, float]]:
     """The range of each condition: as asked for, or of the file, as far as tyres are used; loads from zero."""
-    usual = {low[:-3]: ends for (low, _), ends in zip(RANGES, box(tyre).T, strict=True)}
-    for name in asked.keys() - CONDITIONS.keys():
+    for name in asked.keys() - set(CONDITIONS):
         raise InputError(f"there is no such condition, only {', '.join(CONDITIONS)}", key=f"--range {name}")
+    usual = dict(zip(SEARCHED, box(tyre).T, strict=True))
     found = {}
-    for name, key in CONDITIONS.items():
-        scale = np.degrees(1.0) if name.endswith("_deg") else 1.0
-        low, high = (0.0 if key == "FZM" else tyre[f"{key}IN"]) * scale, tyre[f"{key}AX"] * scale
-        if not low <= high:
-            raise InputError(f"{key}IN is above {key}AX: correct the file", file=path)
-        if name in asked:
-            a, b = asked[name]
-            if not low - 1e-6 <= a <= b <= high + 1e-6:
-                raise InputError(
-                    f"{a:g}:{b:g} is not a range within {low:.6g}:{high:.6g} of the file",
-                    key=f"--range {name}",
-                )
-            found[name] = a, b
-        else:
-            ends = usual[key[:-1]] * scale
-            found[name] = (0.0 if key == "FZM" else float(ends[0])), float(ends[1])
+    for name in CONDITIONS:
+        key, unit = AXES[name]
+        least, most = SEARCHED[key]
+        whole, used = np.array([[tyre[least], tyre[most]], usual[key]]) / unit
+        if key == "Fz":
+            whole[0] = used[0] = 0.0
+        if not whole[0] <= whole[1]:
+            raise InputError(f"{least} is above {most}: correct the file", file=path)
+        low, high = found[name] = asked.get(name, (float(used[0]), float(used[1])))
+        if not whole[0] - 1e-6 <= low <= high <= whole[1] + 1e-6:
+            raise InputError(
+                f"{low:g}:{high:g} is not a range within {whole[0]:.6g}:{whole[1]:.6g} of the file",
+                key=f"--range {name}",
+            )
     return found

@@ -209,7 +209,7 @@ def test_the_help_text_names_inputs_outputs_and_where_the_tyre_is_from():
     assert all(line[0] == "%" for line in first.splitlines()[1:])
     for word in (
         "turn slip on",
-        "Inputs are held",
+        "inputs held to",
         "From a system('x').tir",
         "sideslip angle",
         "tuning.LMUY",

@@ -474,7 +474,7 @@ def test_the_commands_write_where_they_are_told(tmp_path, capsys):
 def test_the_switches_reach_the_code(tmp_path):
     held = write_fmu(FILE, tmp_path, turn_slip=False, limits=True, sources_only=True)
     with zipfile.ZipFile(held) as archive:
-        assert "Inputs are held to the file's ranges." in archive.read("sources/moto_front.h").decode()
+        assert "inputs held to the file's ranges;" in archive.read("sources/moto_front.h").decode()
         assert "turn slip off, inputs held" in archive.read("modelDescription.xml").decode()
     main(["export", "c", str(FILE), "--out", str(tmp_path / "c"), "--transient"])
     assert "moto_front_step(" in (tmp_path / "c" / "moto_front.h").read_text()
@@ -499,7 +499,7 @@ def test_the_mode_is_the_files_unless_asked_for_and_is_told(tmp_path, capsys, ki
     words = f"turn slip {'on' if on else 'off'}"
     assert words in capsys.readouterr().out
     if kind == "c":
-        assert f"{words}, axes" in (tmp_path / "out" / f"{name}.h").read_text()
+        assert f"With {words}; the file has" in (tmp_path / "out" / f"{name}.h").read_text()
         return
     with zipfile.ZipFile(tmp_path / "out" / f"{name}.fmu") as archive:
         root = ElementTree.fromstring(archive.read("modelDescription.xml"))

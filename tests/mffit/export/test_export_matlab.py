@@ -50,7 +50,7 @@ def test_the_command_writes_both_functions_where_it_is_told(tmp_path, capsys):
     )
     text = (tmp_path / "front.m").read_text("ascii")
     assert "turn slip off" in text
-    assert "Inputs are held to the file's ranges" in text
+    assert "inputs held to the file's ranges" in text
     assert "useMode ~= 111" in (tmp_path / "front_mfeval.m").read_text("ascii")
     assert "front_mfeval.m" in capsys.readouterr().out
 

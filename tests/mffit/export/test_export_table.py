@@ -202,3 +202,15 @@ def test_the_slope_at_zero_slip_and_the_lowest_load_are_stated(tmp_path):
         scale = 180.0 / np.pi if slip == "alpha_deg" else 1.0
         wanted = float(getattr(tyre.state(load), state)) / scale
         assert off == pytest.approx(max(abs(slope / wanted - 1.0) for slope in both), abs=2e-3)
+
+
+def test_a_table_has_the_switches_of_a_call(tmp_path):
+    """With ``star`` the formula takes the tangent of the sideslip: 0.5 % more slip at 7 deg."""
+    ranges = {"Fz_N": (3000.0, 3000.0), "alpha_deg": (0.0, 7.0), "gamma_deg": (0.0, 0.0), "kappa": (0.0, 0.0)}
+    made = write_table(CAR, tmp_path, form="csv", ranges=ranges, star=True)
+    Fy = next(one.grid for one in made.tables if one.name == "Fy")
+    exact = tir.read(CAR)(3000.0, np.radians(Fy.axes["alpha_deg"]), star=True).Fy
+    plain = tir.read(CAR)(3000.0, np.tan(np.radians(Fy.axes["alpha_deg"]))).Fy
+    assert Fy.values == pytest.approx(exact, abs=0.01)
+    assert exact == pytest.approx(plain, abs=1e-6)
+    assert "tan(alpha)" in next(path for path in made.written if path.stem.endswith("-Fy")).read_text()
