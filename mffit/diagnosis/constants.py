@@ -164,7 +164,6 @@ USUAL_MISS_OF_A_FORMULA = Real(
 SEPARATING_CHI2 = Real(9.0, "-", "Expected chi2 between explanations at which a run is worthwhile: 3 sigma.")
 TIE_RUN_CAMBER = Real(40.0, "deg", "Largest camber of an added camber sweep.")
 TIE_RUN_POINTS = Count(13, "-", "Points of an added sweep.")
-TIE_RUN_LEANED = Real(20.0, "deg", "Camber of an added leaned sideslip sweep.")
 TIE_RUN_OTHER_LOADS = Series((0.5, 1.4), "-", "Added loads over the smallest and the largest load measured.")
 TIE_RUN_LOW_PRESSURE = Real(0.8, "-", "Added pressure over the main one.")
 TIE_RUN_FAST = Real(2.0, "-", "Added speed over the main one.")

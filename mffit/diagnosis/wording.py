@@ -317,10 +317,12 @@ def separation(found: Separation | None) -> str:
     """The run that separates two explanations, in words; empty without a tie."""
     if found is None:
         return ""
-    run = found.run.value.format(load=found.load)
     if found.worthwhile:
-        return f"{run} (expected chi2 {found.chi2:.0f})"
-    return f"none of the usual runs separates them at this size; the best would be {run} (expected chi2 {found.chi2:.1f})"
+        return f"{found.run} (expected chi2 {found.chi2:.0f})"
+    return (
+        f"none of the usual runs separates them at this size; the best would be {found.run} "
+        f"(expected chi2 {found.chi2:.1f})"
+    )
 
 
 def method(validation: Validation) -> str:

@@ -14,14 +14,14 @@ from mffit.diagnosis.priors import log_prior
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.selection import Contest
 from mffit.diagnosis.stated import stated_noise
-from mffit.diagnosis.ties import SeparatingRun, candidate_runs, separation
+from mffit.diagnosis.ties import candidate_runs, separation
 from mffit.diagnosis.validation import gap, validate
 from mffit.effects import CATALOG, Effect, Free
+from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
 
 BY_ID = {effect.id: effect for effect in CATALOG}
-DRIVEN = {run for run in SeparatingRun if "longitudinal slip" in run.value}
 OFFSET = BY_ID["loadcell-offset-fy"]
 
 
@@ -165,56 +165,50 @@ def test_expected_chi2_between_two_offsets_is_their_square_at_every_point():
 
 def test_the_usual_runs_have_the_conditions_of_their_names():
     points = read(programme(T=30.0))
-    loads = {}
-    for run, added in candidate_runs(points):
-        loads.setdefault(run, []).append((added, float(added.Fz[0])))
-        assert np.ptp(added.Fz) == 0.0
-    assert set(loads) == set(SeparatingRun) - DRIVEN
-    one = {run: rows[0][0] for run, rows in loads.items()}
-    assert sorted(load for _, load in loads[SeparatingRun.OTHER_LOAD]) == [500.0, pytest.approx(2520.0)]
-    usual = 1000.0, 1800.0
-    assert all(
-        min(usual) <= load <= max(usual)
-        for run, rows in loads.items()
-        if run is not SeparatingRun.OTHER_LOAD
-        for _, load in rows
-    )
-    assert np.all(one[SeparatingRun.BACKWARD].direction == -1)
-    assert np.all(one[SeparatingRun.BACKWARD_CAMBER].direction == -1)
-    assert np.ptp(one[SeparatingRun.BACKWARD_CAMBER].gamma) > 1.0
-    assert np.all(one[SeparatingRun.TURNED_ON_RIM].mount == -1)
-    assert np.degrees(one[SeparatingRun.LEANED].gamma) == pytest.approx(20.0)
-    assert one[SeparatingRun.LOW_PRESSURE].p == pytest.approx(200e3)
-    fast, warm = one[SeparatingRun.FAST], one[SeparatingRun.WARM]
-    np.testing.assert_allclose(fast.V, 12.0)
-    np.testing.assert_allclose(warm.T, 50.0)
-    assert np.all(one[SeparatingRun.LATE].t > points.t.max() + 600.0)
-    assert np.all(one[SeparatingRun.STRAIGHT].phi_t == 0.0)
-    assert np.all(one[SeparatingRun.STRAIGHT_CAMBER].phi_t == 0.0)
-    assert one[SeparatingRun.WIDE].phi_t == pytest.approx(-0.5 / 1.323)
-    for run in (SeparatingRun.BACKWARD, SeparatingRun.STRAIGHT, SeparatingRun.FAST):
-        assert np.degrees(np.max(np.abs(one[run].alpha))) == pytest.approx(8.0)
-    assert np.degrees(np.max(np.abs(one[SeparatingRun.CAMBER].gamma))) == pytest.approx(40.0)
-    straight = points.replace(phi_t=0.0)
-    assert {SeparatingRun.STRAIGHT, SeparatingRun.WIDE, SeparatingRun.STRAIGHT_CAMBER}.isdisjoint(
-        run for run, _ in candidate_runs(straight)
-    )
+    runs = dict(candidate_runs(points))
+    assert len(runs) == len(candidate_runs(points)) == 14
+    assert all(f"{added.Fz[0]:.0f} N" in name and np.ptp(added.Fz) == 0.0 for name, added in runs.items())
+    assert not any("longitudinal slip" in name for name in runs)
+
+    def one(*words: str) -> Points:
+        (found,) = (added for name, added in runs.items() if all(word in name for word in words))
+        return found
+
+    loads = np.unique([added.Fz[0] for added in runs.values()])
+    assert (loads[0], loads[-1]) == pytest.approx((500.0, 2520.0))
+    assert np.all((loads[1:-1] >= 1000.0) & (loads[1:-1] <= 1800.0))
+    assert np.all(one("backward sideslip").direction == -1)
+    assert np.all(one("backward camber").direction == -1)
+    assert np.ptp(one("backward camber").gamma) > 1.0
+    assert np.all(one("turned on its rim").mount == -1)
+    assert np.degrees(one("at 20 deg camber").gamma) == pytest.approx(20.0)
+    assert one("0.8 of the pressure").p == pytest.approx(200e3)
+    np.testing.assert_allclose(one("2 times the speed").V, 12.0)
+    np.testing.assert_allclose(one("20 K warmer").T, 50.0)
+    assert np.all(one("end of the test").t > points.t.max() + 600.0)
+    assert np.all(one("sideslip", "straight path").phi_t == 0.0)
+    assert np.all(one("camber", "straight path").phi_t == 0.0)
+    assert one("2 times the radius").phi_t == pytest.approx(-0.5 / 1.323)
+    for words in ("backward sideslip", "turned on its rim", "2 times the speed"):
+        assert np.degrees(np.max(np.abs(one(words).alpha))) == pytest.approx(8.0)
+    assert np.degrees(np.max(np.abs(one("camber sweep to 40 deg").gamma))) == pytest.approx(40.0)
+    straight = dict(candidate_runs(points.replace(phi_t=0.0)))
+    assert len(straight) == 11
+    assert not any("path" in name for name in straight)
 
 
 def test_runs_over_longitudinal_slip_are_proposed_where_it_was_run():
     points = read(programme())
-    driven = points.replace(kappa=np.resize([-0.1, 0.0, 0.1], len(points)))
-    slips = {}
-    for run, added in candidate_runs(driven):
-        slips.setdefault(run, added)
-    assert set(slips) == set(SeparatingRun)
-    assert all(bool(np.any(added.kappa)) is (run in DRIVEN) for run, added in slips.items())
-    for run in DRIVEN:
-        assert (slips[run].kappa.min(), slips[run].kappa.max()) == pytest.approx((-0.1, 0.1))
-    assert np.all(slips[SeparatingRun.BACKWARD_DRIVE].direction == -1)
-    assert np.all(slips[SeparatingRun.DRIVE_TURNED_ON_RIM].mount == -1)
-    assert np.degrees(slips[SeparatingRun.STEERED_DRIVE].alpha) == pytest.approx(4.0)
-    assert np.degrees(slips[SeparatingRun.LEANED_DRIVE].gamma) == pytest.approx(20.0)
+    slips = dict(candidate_runs(points.replace(kappa=np.resize([-0.1, 0.0, 0.1], len(points)))))
+    driven = {name: added for name, added in slips.items() if "longitudinal slip" in name}
+    assert len(driven) == 6
+    assert all(bool(np.any(added.kappa)) is (name in driven) for name, added in slips.items())
+    for name, added in driven.items():
+        assert (added.kappa.min(), added.kappa.max()) == pytest.approx((-0.1, 0.1))
+        assert np.all(added.direction == (-1 if "backward" in name else 1))
+        assert np.all(added.mount == (-1 if "turned on its rim" in name else 1))
+        assert np.degrees(added.alpha) == pytest.approx(4.0 if "4 deg sideslip" in name else 0.0)
+        assert np.degrees(added.gamma) == pytest.approx(20.0 if "20 deg camber" in name else 0.0)
 
 
 def test_runs_can_be_added_to_a_continuous_recording():

@@ -9,7 +9,7 @@ from mffit.diagnosis import diagnose, gap
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.selection import contest
 from mffit.diagnosis.stated import stated_noise
-from mffit.diagnosis.ties import SeparatingRun, separation
+from mffit.diagnosis.ties import separation
 from mffit.diagnosis.validation import validate
 from mffit.diagnosis.where import where
 from mffit.effects import CATALOG
@@ -93,4 +93,4 @@ def test_the_flipped_mount_separates_conicity_from_a_load_cell(right_model):
     a, b = (tilted.fit((BY_ID[i],)) for i in ("conicity", "crosstalk-fz-fy"))
     best = separation(points, a, b, {"Fy": 6.0, "Mz": 0.6})
     assert best.chi2 > 9.0
-    assert best.run is SeparatingRun.TURNED_ON_RIM
+    assert best.run.endswith("with the tyre turned on its rim")

@@ -13,7 +13,7 @@ from mffit.constants import TERMINAL_LINES, TERMINAL_WIDTH
 from mffit.diagnosis import Asked, diagnose, wording
 from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.rest import Answer
-from mffit.diagnosis.ties import SeparatingRun, Separation
+from mffit.diagnosis.ties import Separation
 from mffit.effects import CATALOG
 from mffit.report import constants, style, text, write_diagnosis
 from mffit.report.curves import conditions
@@ -101,7 +101,7 @@ def test_a_tie_is_stated_with_the_run_that_separates_it(misaligned, tmp_path):
     found = dataclasses.replace(
         misaligned.effects[0],
         tied=tuple(effect for effect in CATALOG if effect.id == "ply-steer"),
-        separation=Separation(SeparatingRun.TURNED_ON_RIM, 1400.0, 50.0),
+        separation=Separation("a sideslip sweep at 1400 N with the tyre turned on its rim", 50.0),
     )
     tied = dataclasses.replace(misaligned, effects=(found,))
     assert "these data cannot tell it from: ply-steer" in text.diagnosis_summary(tied)
