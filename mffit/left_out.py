@@ -7,47 +7,10 @@ Welsch, Regression Diagnostics, 1980, section 2.1, there with the hat matrix J C
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy.special import ndtri
 
 from mffit import constants
-from tir.frozen import ReadOnlyArrays
-
-
-@dataclass(frozen=True, slots=True)
-class Predicted(ReadOnlyArrays):
-    """Sum of squared prediction errors of every left-out group of points."""
-
-    chi2: np.ndarray  #: (s, c) by group and channel
-
-    @property
-    def total(self) -> float:
-        """Sum over groups and channels."""
-        return float(np.sum(self.chi2))
-
-    def falls(self, other: Predicted, channel: int | None = None) -> float:
-        """Mean improvement by ``other`` in standard errors over the groups, for all channels or the index ``channel``."""
-        change = self.chi2 - other.chi2
-        return over_scatter(np.sum(change, axis=1) if channel is None else change[:, channel])
-
-
-def left_out_errors(
-    slopes: np.ndarray, residual: np.ndarray, information: np.ndarray, gradient: np.ndarray, group: np.ndarray
-) -> np.ndarray:
-    """Errors (m,) of the points when each group is predicted from all others, with all numbers re-estimated.
-
-    ``slopes`` (m, k) are derivatives of the ``residual`` (m,), model less measured in units of the noise. ``information`` (k,
-    k) and ``gradient`` (k,), half the derivative of the sum of squares, are of data and priors. ``group`` (m,) is the index of
-    each row's.
-    """
-    error = np.empty_like(residual)
-    for k in range(int(group.max(initial=-1)) + 1):
-        rows = np.flatnonzero(group == k)
-        out, r = np.take(slopes.T, rows, axis=1).T, residual[rows]  # by columns: the memory order of slopes
-        error[rows] = r + out @ moved_without(out, r, information, gradient)
-    return error
 
 
 def moved_without(
@@ -55,13 +18,6 @@ def moved_without(
 ) -> np.ndarray:
     """Change (k,) of the numbers when a group with these slopes (n, k) and residuals (n,) is left out."""
     return -np.linalg.solve(information - slopes.T @ slopes, gradient - slopes.T @ residual)
-
-
-def predicted(error: np.ndarray, group: np.ndarray, channel: np.ndarray, *, channels: int = 2) -> Predicted:
-    """The misfit of groups from the errors (m,) of their points; ``channel`` (m,) is the index of the channel of each error."""
-    count = int(group.max(initial=-1)) + 1
-    place = channels * group + channel
-    return Predicted(np.bincount(place, error**2, minlength=channels * count).reshape(count, channels))
 
 
 def needed_fall(candidates: int) -> float:

@@ -13,7 +13,26 @@ from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.effects import Effect
-from mffit.left_out import Predicted, left_out_errors, needed_fall, predicted
+from mffit.left_out import needed_fall, over_scatter
+from mffit.linearised.mixed import Mixed, Variances
+from tir.frozen import ReadOnlyArrays
+
+
+@dataclass(frozen=True, slots=True)
+class Predicted(ReadOnlyArrays):
+    """Sum of squared prediction errors of every left-out group of points."""
+
+    chi2: np.ndarray  #: (s, c) by group and channel
+
+    @property
+    def total(self) -> float:
+        """Sum over groups and channels."""
+        return float(np.sum(self.chi2))
+
+    def falls(self, other: Predicted, channel: int | None = None) -> float:
+        """Mean improvement by ``other`` in standard errors over the groups, for all channels or the index ``channel``."""
+        change = self.chi2 - other.chi2
+        return over_scatter(np.sum(change, axis=1) if channel is None else change[:, channel])
 
 
 class LeftOutPrediction:
@@ -39,9 +58,14 @@ class LeftOutPrediction:
         C, r = self._whitened(hypothesis)
         if more:
             C = np.column_stack([C, self.problem.noise.whiten(np.column_stack(more))])
-        C = np.asfortranarray(C)  # left_out_errors selects rows of every column
-        error = left_out_errors(C, -r, C.T @ C + np.eye(C.shape[1]), -C.T @ r, self.sweep)
-        return predicted(error, self.sweep, self.channel, channels=len(self.problem.channels))
+        groups = [np.flatnonzero(self.sweep == k) for k in range(self.sweeps)]
+        given = Variances(np.zeros(C.shape[1]), np.zeros(0), 0.0)
+        found = Mixed(r, C, np.zeros((len(r), 0)), groups).left_out(given, groups)
+        shape = self.sweeps, len(self.problem.channels)
+        square = np.zeros(shape)
+        for k, one in enumerate(found):
+            square[k] = np.bincount(self.channel[one.rows], one.error**2, minlength=shape[1])
+        return Predicted(square)
 
     def _whitened(self, hypothesis: Hypothesis) -> tuple[np.ndarray, np.ndarray]:
         """Whitened changes (m, k) by the numbers of a hypothesis, and its residual (m,); the last ones are cached."""

@@ -103,11 +103,11 @@ class Mixed(ReadOnlyArrays):
         half = np.swapaxes(np.linalg.inv(inner) * own_size, 1, 2)
         own, halfway = half @ np.swapaxes(half, 1, 2), np.swapaxes(half, 1, 2) @ sums.across
         through = half @ halfway
-        m = len(size)
-        flat = halfway.reshape(-1, m)
+        rows = sums.own_pull.size, len(size)
+        flat = halfway.reshape(rows)
         square = flat.T @ flat  # a product with its own transpose is half the work
         information = w * sums.common - w * w * square
-        pull = w * sums.pull - w * w * sums.own_pull.ravel() @ through.reshape(-1, m)
+        pull = w * sums.pull - w * w * sums.own_pull.ravel() @ through.reshape(rows)
         rounding = ROUNDING * float(np.max(w * np.diag(sums.common) * size**2, initial=0.0))
         found = Informed.by(size[:, None] * information * size, size * pull, rounding)
         return MixedPosterior(

@@ -10,9 +10,8 @@ from small_programme import U_FY, U_MZ, problem, programme, read
 
 from mffit.constants import FEWEST_SWEEPS_TO_PREDICT
 from mffit.diagnosis.inexact import EXACT
-from mffit.diagnosis.prediction import LeftOutPrediction, chosen_by_prediction, judged
+from mffit.diagnosis.prediction import LeftOutPrediction, Predicted, chosen_by_prediction, judged
 from mffit.effects import CATALOG, Effect, Free
-from mffit.left_out import Predicted
 from mffit.rig_errors import Faults
 
 OFFSET = next(effect for effect in CATALOG if effect.id == "loadcell-offset-fy")
