@@ -28,7 +28,9 @@ SECOND_RADIUS_FACTOR = Real(
 )
 
 # The list
-WORTHWHILE_FALL = Real(0.05, "-", "Share by which a run must lower the uncertainty of the goal.")
-EQUALLY_GOOD = Real(
-    0.02, "-", "Runs whose uncertainties differ by less count as equal; the one with fewer points is taken."
+WORTHWHILE_FALL = Real(
+    0.05,
+    "-",
+    "Share by which a run must lower the uncertainty of the goal; runs that differ by less count as equal, and the one with "
+    "fewer points is taken.",
 )

@@ -192,7 +192,7 @@ def _best(
     equally_good = [
         (sum(run.cost for run in more), then, k)
         for k, (more, then) in enumerate(zip(possible, after, strict=True))
-        if then <= (1.0 + constants.EQUALLY_GOOD) * min(after)
+        if then <= (1.0 + constants.WORTHWHILE_FALL) * min(after)
     ]
     return possible[min(equally_good)[2]]
 
@@ -202,6 +202,6 @@ def _without_superfluous(u: U, chosen: Sequence[PlannedRun]) -> list[PlannedRun]
     kept = list(chosen)
     for run in chosen:
         fewer = [other for other in kept if other is not run]
-        if fewer and u(fewer) <= (1.0 + constants.EQUALLY_GOOD) * u(kept):
+        if fewer and u(fewer) <= (1.0 + constants.WORTHWHILE_FALL) * u(kept):
             kept = fewer
     return kept
