@@ -90,19 +90,8 @@ def missed_at_readings(
         read, u = np.isfinite(residual), run[f"u_{column(name, 'run')}"].to_numpy()
         seen: dict[str, list[_Seen]] = {side: [] for side in SIDES}
         for rows in (part for own in groups if len(part := own[read[own]])):
-            F = force[name][rows]
-            large = np.abs(F) >= constants.LARGE_FORCE * np.max(np.abs(F), initial=0.0)
-            signs = {"": large, "positive": large & (F > 0.0), "negative": large & (F < 0.0)}
             here = np.array([values[rows[0]] for values in level.values()])
-            of_sign = {
-                side: _Seen(here, *(float(x / np.sum(np.abs(F[own]))) for x in sums))
-                for side, own in signs.items()
-                if np.any(F[own])
-                for sums in [(np.sign(F[own]) @ residual[rows[own]], np.sum(u[rows[own]]))]
-            }
-            if len(of_sign) == len(signs):
-                up, down = of_sign["positive"], of_sign["negative"]
-                of_sign["apart"] = _Seen(here, up.share - down.share, float(np.hypot(up.u, down.u)))
+            of_sign = _of_sweep(here, force[name][rows], residual[rows], u[rows])
             for side, one in of_sign.items():
                 seen[side].append(one)
         found[name] = MissedAtReadings(
@@ -113,6 +102,22 @@ def missed_at_readings(
             region=_clearest(tuple(level), seen),
             slopes=missed_slopes(known, fitted, points, name, SLIP[name]) if SLIP.get(name) in swept else (),
         )
+    return found
+
+
+def _of_sweep(level: np.ndarray, F: np.ndarray, residual: np.ndarray, u: np.ndarray) -> dict[str, _Seen]:
+    """By side, the relative error of the largest forces of a sweep: model's (n,), residuals and their u (n,)."""
+    large = np.abs(F) >= constants.LARGE_FORCE * np.max(np.abs(F), initial=0.0)
+    signs = {"": large, "positive": large & (F > 0.0), "negative": large & (F < 0.0)}
+    found = {
+        side: _Seen(level, *(float(x / np.sum(np.abs(F[own]))) for x in sums))
+        for side, own in signs.items()
+        if np.any(F[own])
+        for sums in [(np.sign(F[own]) @ residual[own], np.sum(u[own]))]
+    }
+    if len(found) == len(signs):
+        up, down = found["positive"], found["negative"]
+        found["apart"] = _Seen(level, up.share - down.share, float(np.hypot(up.u, down.u)))
     return found
 
 
