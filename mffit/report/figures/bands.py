@@ -9,11 +9,10 @@ import numpy as np
 
 from mffit.constants import COVERAGE_FACTOR_95, STEPS_OF_LINE
 from mffit.fit.written.files import Files
-from mffit.points import Points, make_points
+from mffit.points import make_points
 from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.report import constants, labels, style, words
 from mffit.report.build_view import BuildView
-from mffit.report.curves import shown_values
 from mffit.report.drawing.records import NOTHING, Guide, Look, Panel, Sheet, Trace, both_sides
 from mffit.rig import Simulation
 from mffit.rounding import number
@@ -74,20 +73,14 @@ def _why_wide(view: BuildView, channel: str, rows: Sequence[Sequence[Panel]]) ->
 
 
 def _panel(view: BuildView, over: str, name: str, colours: Mapping[float, str]) -> Panel:
-    files, tyre = view.build.fit.files, view.build.fit.tyre
+    files = view.build.fit.files
     assert files is not None
     x, guides = _ends(files, over)
-    inputs: dict[str, Any] = {
-        "alpha": np.zeros_like(x),
-        "gamma": np.zeros_like(x),
-        "kappa": np.zeros_like(x),
-        over: x,
-    }
     series = []
     for load, colour in colours.items():
-        where = make_points(**inputs, Fz=load, p=float(tyre["NOMPRES"]), V=10.0, phi_t=0.0)
-        y, half = _model(view, name, where)
-        at, look = shown_values(where, over), Look(colour=colour, line="-", width=1.0)
+        y, half = _best(view, name, {over: x, "Fz": load})
+        at = x if over == "kappa" else np.degrees(x)
+        look = Look(colour=colour, line="-", width=1.0)
         series.append(Trace(name=labels.LOAD.of(load), x=at, y=y, half=half, look=look))
     return Panel(title=CHANNELS[name].short_axis, x=labels.angle_axis(over), series=series, guides=guides)
 
@@ -104,18 +97,19 @@ def _ends(files: Files, over: str) -> tuple[np.ndarray, list[Guide]]:
     return np.linspace(low, high, STEPS_OF_LINE), guides
 
 
-def _model(view: BuildView, channel: str, where: Points) -> tuple[np.ndarray, np.ndarray]:
-    """A channel (m,) of the model at points, and half the height of its band."""
-    tyre = Simulation.of(view.build.fit.tyre, turn_slip=view.on_disc)
-    line = tyre.readings(where, (channel,))[channel]
-    known = view.build.prediction
+def _best(view: BuildView, channel: str, at: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+    """The best estimate (m,) of a channel on a straight path, and half the height of its band, as those of the road."""
+    fitted, known = view.build.fit.tyre, view.build.prediction
+    tyre = Simulation.of(fitted, turn_slip=view.on_disc)
+    inputs: dict[str, Any] = {"alpha": 0.0, "gamma": 0.0, "kappa": 0.0, **at}
+    where = make_points(**inputs, p=float(fitted["NOMPRES"]), V=float(fitted["LONGVL"]), phi_t=0.0)
     if known is not None and channel in known.channels:
         found = known.forces(tyre, tyre, where, (channel,))[channel]
-        return line, COVERAGE_FACTOR_95 * np.sqrt((found.best - found.file) ** 2 + found.variance)
+        return found.best, COVERAGE_FACTOR_95 * np.sqrt(found.variance)
     posterior = view.build.fit.posterior  # not measured: nothing but its coefficients is known
     names = [name for name in posterior.names if name in tyre.values]
-    slopes = tyre.sensitivities(where, names, (channel,))[1][channel]
-    return line, COVERAGE_FACTOR_95 * posterior.spread_of(slopes, names)
+    read, slopes = tyre.sensitivities(where, names, (channel,))
+    return read[channel], COVERAGE_FACTOR_95 * posterior.spread_of(slopes[channel], names)
 
 
 LOOKS = {

@@ -12,13 +12,15 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 from PIL import Image
+from small_rigs import built, flat
 
+from mffit.pipeline.on_road import on_road
 from mffit.quantities import CHANNELS
 from mffit.report import build, labels, style
 from mffit.report.build_view import view_of
 from mffit.report.drawing import pictures
 from mffit.report.drawing.records import Axis, Bars, Guide, Look, Panel, Sheet, Trace, listed, with_fewer_rows
-from mffit.report.figures import decomposition, fit, residuals, spin
+from mffit.report.figures import bands, decomposition, fit, residuals, road, spin
 from mffit.report.figures.spin import TYRES
 
 
@@ -65,6 +67,36 @@ def test_parts_have_a_row_per_channel_and_angle_and_a_panel_per_load(view):
     ]
     for _, *even in sheet.rows:
         assert len({(panel.y.low, panel.y.high, panel.y.label) for panel in even}) == 1
+
+
+def test_all_bands_of_a_report_are_those_of_the_road(tmp_path):
+    """One width at one condition, around the best estimate, also where the tyre is not as the formula."""
+    result = built(flat(), tmp_path)
+    channels = {
+        name: dataclasses.replace(one, missed=one.missed + 0.1 * np.max(np.abs(result.points.channel(name))))
+        for name, one in result.prediction.channels.items()
+    }
+    result = dataclasses.replace(result, prediction=dataclasses.replace(result.prediction, channels=channels))
+    view = view_of(dataclasses.replace(result, road=on_road(result)))
+    assert np.ptp(result.prediction.missed("Fy", result.points)) > 50.0
+
+    def found(sheet, channel, name, over):
+        """Middle and half width at one angle [deg]."""
+        (trace,) = [
+            s
+            for panel in sheet.panels
+            for s in panel.series
+            if panel.title.startswith(CHANNELS[channel].short_axis)
+            and panel.x == labels.angle_axis(over)
+            and s.name == name
+        ]
+        return np.interp([-4.0, 0.0, 4.0], trace.x, trace.y), np.interp([-4.0, 0.0, 4.0], trace.x, trace.half)
+
+    for channel in ("Fy", "Mz"):
+        middle, half = found(road.road(view), channel, "upright", "alpha")
+        other, its_half = found(bands.bands(view), channel, labels.LOAD.of(1400.0), "alpha")
+        assert other == pytest.approx(middle, rel=1e-4)  # places of both curves
+        assert its_half == pytest.approx(half, rel=1e-4)
 
 
 def test_raw_curve_is_the_sum_of_its_parts(view):
