@@ -64,12 +64,6 @@ def ranges_text(ranges: Iterable[LineRange]) -> str:
     return ", ".join(str(first) if first == last else f"{first}-{last}" for first, last in ranges)
 
 
-def inside(lines: np.ndarray, ranges: Sequence[LineRange]) -> np.ndarray:
-    """Mask (n,) of the lines that the ranges contain, which are as by :func:`line_ranges`."""
-    first, last = np.array([(0, 0), *ranges]).T  # no line is 0
-    return np.asarray(lines <= last[np.searchsorted(first, lines, side="right") - 1])
-
-
 def _joined(ranges: Sequence[LineRange]) -> tuple[LineRange, ...]:
     out: list[LineRange] = []
     for first, last in ranges:

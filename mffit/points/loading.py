@@ -31,7 +31,7 @@ from mffit.points.steady import scale_of
 from mffit.points.steps import steps
 from mffit.points.stretch import StretchNote
 from mffit.points.unlike import unlike_files
-from mffit.sweeps.sweep import ExcludedRows
+from mffit.sweeps.sweep import Sweep
 from tir.conventions import FLIPPED
 
 SIDES = ("left", "right")
@@ -120,7 +120,7 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     if not continuous:
         left_out += _moving_left_out(points)
     stepped = steps(sweeps, phi_t, config.tyre.unloaded_radius, scale)
-    excluded = _excluded(found.excluded, phi_t)
+    excluded = _excluded(found.of_excluded, phi_t)
     return Reading(
         kept,
         tuple(warnings),
@@ -154,12 +154,11 @@ def _slip_as_read(points: Points, taken_off: Mapping[str, SlipZero]) -> Points |
     return points.replace(kappa=kappa)
 
 
-def _excluded(excluded: Sequence[ExcludedRows], phi_t: Mapping[str, float]) -> Points | None:
+def _excluded(excluded: Sequence[Sweep], phi_t: Mapping[str, float]) -> Points | None:
     """Finished points that were left out by hand; None without any."""
     parts = [
         rows_as_points(sweep, phi_t[sweep.file], np.arange(len(sweep)))
-        for rows in excluded
-        for sweep in rows.sweeps
+        for sweep in excluded
         if not sweep.is_series
     ]
     return concatenate(parts) if parts else None

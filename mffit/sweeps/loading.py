@@ -5,14 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from mffit.config import Config, setup_names
-from mffit.config.lines import ExcludeTable, inside, ranges_text
+from mffit.config.lines import ranges_text
 from mffit.config.models import SweepTable
 from mffit.constants import NAMED_IN_SENTENCE
 from mffit.errors import InputError
@@ -47,6 +46,7 @@ class _File(NamedTuple):
     columns: Columns | None = None  #: None if every row is excluded
     frame: FileFrame | None = None  #: None if no row can be read
     excluded: tuple[ExcludedRows, ...] = ()
+    of_excluded: tuple[Sweep, ...] = ()  #: sweeps of the excluded rows, as far as they can be read
     contradicting: tuple[str, ...] = ()  #: sentences about rows in another direction than the [[sweep]]
 
 
@@ -86,9 +86,8 @@ def load(config: Config) -> Sweeps:
     return Sweeps(
         in_iso_w(found),
         warnings,
-        tuple(
-            replace(rows, sweeps=in_iso_w(rows.sweeps)) for file in files.values() for rows in file.excluded
-        ),
+        tuple(rows for file in files.values() for rows in file.excluded),
+        in_iso_w([sweep for file in files.values() for sweep in file.of_excluded]),
         tuple(
             (name, f.columns.standing) for name, f in files.items() if f.columns and len(f.columns.standing)
         ),
@@ -109,25 +108,27 @@ def _in_iso_w(sweep: Sweep, frame: FileFrame, config: Config, *, vertical: bool)
 
 def _file(config: Config, index: int, entry: SweepTable, setup: str) -> _File:
     """What is read of the file of a [[sweep]]; of excluded rows, which may be damaged, as much as can be read."""
-    whole, frame, excluded = _raw(config, index, entry), None, []
-    raw, apart = _apart(config, entry, whole)
-    for exclusion, rows in apart:
-        sweeps: tuple[Sweep, ...] = ()
+    whole = _raw(config, index, entry)
+    excluded = _excluded(config, entry, whole)
+    out = np.isin(whole.lines, np.concatenate([np.empty(0, int), *(rows.line for rows in excluded)]))
+
+    def read(rows: np.ndarray) -> tuple[Columns, tuple[Sweep, ...], FileFrame]:
+        columns = _columns(config, index, entry, whole.of_rows(rows) if np.any(out) else whole)
+        return columns, tuple(sweeps_of(columns, config, entry, setup)), _frame(config, columns)
+
+    # All at once, or entry by entry where a damaged row stops that.
+    apart: list[tuple[Columns, tuple[Sweep, ...], FileFrame]] = []
+    with suppress(InputError):
+        apart = [read(out)] if np.any(out) else []
+    for rows in [] if apart else excluded:
         with suppress(InputError):
-            columns = _columns(config, index, entry, rows)
-            sweeps, frame = tuple(sweeps_of(columns, config, entry, setup)), _frame(config, columns)
-        excluded.append(ExcludedRows(entry.file, np.asarray(rows.lines), exclusion.why, sweeps))
-    if raw is None:
-        return _File(whole, frame=frame, excluded=tuple(excluded))
-    columns = _columns(config, index, entry, raw)
-    return _File(
-        whole,
-        tuple(sweeps_of(columns, config, entry, setup)),
-        columns,
-        _frame(config, columns),
-        tuple(excluded),
-        tuple(_contradicting(columns, entry)),
-    )
+            apart.append(read(np.isin(whole.lines, rows.line)))
+    of_excluded = tuple(sweep for _, sweeps, _ in apart for sweep in sweeps)
+    if np.all(out):
+        return _File(whole, (), None, apart[-1][2] if apart else None, excluded, of_excluded)
+    columns, sweeps, frame = read(~out)
+    contradicting = tuple(_contradicting(columns, entry))
+    return _File(whole, sweeps, columns, frame, excluded, of_excluded, contradicting)
 
 
 def _sheets_left_out(tables: Mapping[str, RawTable]) -> list[str]:
@@ -187,25 +188,26 @@ def _raw(config: Config, index: int, entry: SweepTable) -> RawTable:
     return read(path)
 
 
-def _apart(
-    config: Config, entry: SweepTable, raw: RawTable
-) -> tuple[RawTable | None, list[tuple[ExcludeTable, RawTable]]]:
-    """The kept rows of a file, None without any, and the excluded rows with their entries of ``[fit] exclude``.
+def _excluded(config: Config, entry: SweepTable, raw: RawTable) -> tuple[ExcludedRows, ...]:
+    """The rows of a file that each entry of ``[fit] exclude`` leaves out; of two that name a line, the first has it.
 
     Rows are excluded before any check, so that a user can exclude a damaged row without editing the file.
     """
     lines = np.asarray(raw.lines)
-    out = np.zeros(len(lines), dtype=bool)
-    excluded = []
     check_excluded(config, entry.file, lines)
-    for one in config.fit.exclude:
-        if one.file != entry.file:
-            continue
-        mask = inside(lines, one.ranges) & ~out  # a line that two entries name is listed with the first
-        out |= mask
-        if np.any(mask):
-            excluded.append((one, raw.of_rows(mask)))
-    return None if np.all(out) else raw.of_rows(~out) if np.any(out) else raw, excluded
+    own = [one for one in config.fit.exclude if one.file == entry.file]
+    place = np.full(len(lines), len(own))
+    for k, one in reversed([*enumerate(own)]):
+        for first, last in one.ranges:
+            place[np.searchsorted(lines, first) : np.searchsorted(lines, last, "right")] = k
+    rows = np.split(
+        np.argsort(place, kind="stable"), np.searchsorted(np.sort(place), np.arange(1, len(own) + 1))
+    )
+    return tuple(
+        ExcludedRows(entry.file, lines[mine], one.why)
+        for one, mine in zip(own, rows, strict=False)
+        if len(mine)
+    )
 
 
 def check_excluded(config: Config, file: str, lines: np.ndarray) -> None:
@@ -213,6 +215,9 @@ def check_excluded(config: Config, file: str, lines: np.ndarray) -> None:
 
     Raises InputError if a range begins or ends at another line.
     """
+    named = [end for one in config.fit.exclude if one.file == file for end in np.ravel(one.ranges)]
+    if np.all(np.isin(named, lines)):
+        return
     for index, one in enumerate(config.fit.exclude):
         ends = np.array(one.ranges).ravel() if one.file == file else np.array([], int)
         wrong = ends[~np.isin(ends, lines)]

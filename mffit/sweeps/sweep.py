@@ -73,7 +73,6 @@ class ExcludedRows(ReadOnlyArrays, Brief):
     file: str  #: name as in ``tyre.toml``
     line: np.ndarray  #: (n,) in the file, counted from 1
     why: str
-    sweeps: tuple[Sweep, ...]  #: sweeps of these rows; empty if they cannot be read
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -83,5 +82,6 @@ class Sweeps(ReadOnlyArrays, Brief):
     sweeps: tuple[Sweep, ...]  #: without the excluded rows
     warnings: tuple[str, ...]
     excluded: tuple[ExcludedRows, ...] = ()
+    of_excluded: tuple[Sweep, ...] = ()  #: sweeps of the excluded rows, as far as they can be read
     standing: tuple[tuple[str, np.ndarray], ...] = ()
     """File, as named in ``tyre.toml``, and lines (m,) of the samples at standstill."""

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from operator import itemgetter
 from typing import Any
 
 import tomlkit
 from tomlkit.items import AoT, Array, Table
 
 from mffit.config.by_hand import KEYS
-from mffit.config.lines import LineListError, LineRange, line_ranges, ranges_text
+from mffit.config.lines import LineListError, LineRange, line_ranges, line_text, ranges_text
 from mffit.errors import InputError, shortened
 from mffit.window.settings import TABLES, value_of
 
@@ -54,21 +56,23 @@ def leave_out(text: str, *, readings: Sequence[Mapping[str, Any]], why: str) -> 
     An entry of the same file and reason is extended.
     """
 
-    def change(document: Any) -> None:
-        entries = _exclude(document)
-        for file, ranges in _by_file(readings).items():
-            kept = _without(ranges, [part for e in entries if e["file"] == file for part in _ranges(e)])
-            if not kept:
-                continue
-            own = next((e for e in entries if e["file"] == file and e.get("why") == why), None)
-            if own is not None:
-                own["lines"] = _lines([*_ranges(own), *kept])
-                continue
-            entry = tomlkit.table() if isinstance(entries, AoT) else tomlkit.inline_table()
-            entry.update({"file": file, "lines": _lines(kept), "why": why})
-            entries.append(entry)
+    return _edited(text, lambda document: _leave_out(document, readings, why))
 
-    return _edited(text, change)
+
+def _leave_out(document: Any, readings: Sequence[Mapping[str, Any]], why: str) -> None:
+    entries = _exclude(document)
+    for file, ranges in _by_file(readings).items():
+        out = sorted(part for e in entries if e["file"] == file for part in _ranges(e))
+        kept = _without(ranges, line_ranges(ranges_text(out)) if out else ())
+        if not kept:
+            continue
+        own = next((e for e in entries if e["file"] == file and e.get("why") == why), None)
+        if own is not None:
+            own["lines"] = _lines([*_ranges(own), *kept])
+            continue
+        entry = tomlkit.table() if isinstance(entries, AoT) else tomlkit.inline_table()
+        entry.update({"file": file, "lines": _lines(kept), "why": why})
+        entries.append(entry)
 
 
 def take_back(text: str, *, readings: Sequence[Mapping[str, Any]]) -> str:
@@ -77,14 +81,16 @@ def take_back(text: str, *, readings: Sequence[Mapping[str, Any]]) -> str:
     def change(document: Any) -> None:
         entries = _exclude(document)
         for file, ranges in _by_file(readings).items():
-            for k in reversed(range(len(entries))):
-                if entries[k]["file"] != file:
-                    continue
-                kept = _without(_ranges(entries[k]), ranges)
-                if not kept:
-                    del entries[k]
-                elif kept != list(_ranges(entries[k])):
-                    entries[k]["lines"] = _lines(kept)
+            gone = []
+            for k, entry in enumerate(entries):
+                if entry["file"] == file:
+                    kept = _without(_ranges(entry), ranges)
+                    if not kept:
+                        gone.append(k + 1)
+                    elif kept != list(_ranges(entry)):
+                        entry["lines"] = _lines(kept)
+            for first, last in reversed(line_ranges(line_text(gone))) if gone else ():
+                del entries[first - 1 : last]  # at once, as each deletion numbers all entries anew
         if not entries:
             del document["fit"]["exclude"]
 
@@ -121,21 +127,21 @@ def add_recordings(text: str, *, sweeps: str, bad: Sequence[Mapping[str, Any]] =
     ``bad`` are readings among them to leave out, as in :func:`leave_out`, each with its ``why``.
     """
 
-    def listed(document: Any) -> None:
-        for entry in tomlkit.parse(sweeps).unwrap()["sweep"]:
-            table = tomlkit.inline_table()
-            table.update(entry)
-            document["sweep"].append(table)
-
-    if isinstance(tomlkit.parse(text).get("sweep"), Array):
-        text = _edited(text, listed)
-    else:
+    is_list = isinstance(tomlkit.parse(text).get("sweep"), Array)
+    if not is_list:
         text = _whole(SINGLE_SWEEP.sub(r"\1[[sweep]]", text))
         end = "\r\n" if "\r\n" in text else "\n"
         text += end + sweeps.replace("\n", end)
-    for one in bad:
-        text = leave_out(text, readings=[one], why=str(one["why"]))
-    return text
+
+    def change(document: Any) -> None:
+        for entry in tomlkit.parse(sweeps).unwrap()["sweep"] if is_list else ():
+            table = tomlkit.inline_table()
+            table.update(entry)
+            document["sweep"].append(table)
+        for one in bad:
+            _leave_out(document, [one], str(one["why"]))
+
+    return _edited(text, change)
 
 
 EDITS: Mapping[str, Callable[..., str]] = {
@@ -198,18 +204,17 @@ def _lines(ranges: Iterable[LineRange]) -> str:
     return ranges_text(line_ranges(ranges_text(ranges)))
 
 
-def _without(ranges: Sequence[LineRange], taken: Iterable[LineRange]) -> list[LineRange]:
-    """The ranges without the lines of others; ``ranges`` are in order."""
-    kept, others, k = [], sorted(taken), 0
+def _without(ranges: Sequence[LineRange], taken: Sequence[LineRange]) -> list[LineRange]:
+    """The ranges without the lines of others; both are in order and apart."""
+    kept = []
     for first, last in ranges:
-        while k < len(others) and others[k][1] < first:
-            k += 1
-        j = k
-        while j < len(others) and others[j][0] <= last:
-            if first < others[j][0]:
-                kept.append((first, others[j][0] - 1))
-            first = max(first, others[j][1] + 1)
-            j += 1
+        for k in range(bisect_left(taken, first, key=itemgetter(1)), len(taken)):
+            begin, end = taken[k]
+            if begin > last:
+                break
+            if first < begin:
+                kept.append((first, begin - 1))
+            first = end + 1
         if first <= last:
             kept.append((first, last))
     return kept

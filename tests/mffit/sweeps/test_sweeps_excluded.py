@@ -64,6 +64,23 @@ def test_a_line_of_two_entries_is_listed_once(project):
     assert found.excluded.line.tolist() == [4, 5, 6]
 
 
+def test_an_entry_for_every_line_leaves_out_what_one_entry_does(project):
+    file = "sideslip_1500.csv"
+    one = read_points(excluding(project, (file, "4-5, 7, 9")))
+    each = read_points(excluding(project, *((file, line) for line in ("9", "4", "7", "5"))))
+    assert [row.lines for row in each.left_out if row.by == "hand"] == ["9", "4", "7", "5"]
+    for channel in ("line", "alpha", "Fz", "Fy", "Mz"):
+        assert np.array_equal(getattr(each.excluded, channel), getattr(one.excluded, channel)), channel
+        assert np.array_equal(getattr(each.points, channel), getattr(one.points, channel)), channel
+
+
+def test_a_damaged_row_does_not_hide_other_excluded_ones(project):
+    project.tables["camber_1500.csv"]["Fy_N"] = project.tables["camber_1500.csv"]["Fy_N"].astype(object)
+    project.tables["camber_1500.csv"].loc[4, "Fy_N"] = "overload"
+    found = read_points(excluding(project, ("camber_1500.csv", "3-4"), ("camber_1500.csv", "6")))
+    assert found.excluded.line.tolist() == [3, 4]
+
+
 def test_a_damaged_row_can_be_excluded(project):
     """The row would be refused otherwise: the files of a laboratory stay as the rig wrote them."""
     project.tables["camber_1500.csv"]["Fy_N"] = project.tables["camber_1500.csv"]["Fy_N"].astype(object)
