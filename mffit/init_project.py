@@ -14,7 +14,7 @@ from mffit.sweeps.channels import SWEEP_CHANNELS
 
 OFFERED = ("alpha_deg", "gamma_deg", "Fz_N", "Fy_N", "Mz_Nm", "p_kPa", "V_mps", "T_degC")
 """Headings of the templates: the channels that a rig usually reports for a finished point."""
-FILL_IN = re.compile(r"^# (\w+) = .*# FILL IN", re.MULTILINE)
+FILL_IN = re.compile(r"^(?:# )?(\w+) = .*# FILL IN", re.MULTILINE)
 """Line of the template with a key that only the user knows."""
 
 

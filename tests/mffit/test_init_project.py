@@ -21,11 +21,11 @@ SAMPLES = Path(__file__).parents[2] / "samples"
 
 
 def test_an_empty_project_is_refused_and_the_keys_to_fill_in_are_named(tmp_path):
-    """No number of another tyre is in use before the user has written his own."""
+    """No number of another tyre, and no sign convention, is in use before the user has written his own."""
     file = init_project(tmp_path / "new")[0]
     left = to_fill_in()
     assert "unloaded_radius" in left
-    assert "path_radius" in left
+    assert {"path_radius", "axes", "force_frame", "path_centre", "side"} < {*left}
     while left:
         with pytest.raises(InputError) as refused:
             config.load(file)
@@ -36,9 +36,11 @@ def test_an_empty_project_is_refused_and_the_keys_to_fill_in_are_named(tmp_path)
 
 
 def filled_in(file: Path, *keys: str) -> None:
+    """Write the example of the template, or the first of the choices that its comment names."""
     text = file.read_text()
     for key in keys:
         text = re.sub(rf"^# (?={key} = .*# FILL IN)", "", text, flags=re.MULTILINE)
+        text = re.sub(rf'^({key} = )""(.*# FILL IN.*?)("[^"]+")', r"\1\3\2\3", text, flags=re.MULTILINE)
     file.write_text(text)
 
 
