@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from mffit.fit import constants
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.problem import FitProblem
 from mffit.fit.stages import is_asymmetry
@@ -142,7 +143,7 @@ def with_free_epsilon(fitted: Fitted) -> Simulation:
     """The simulation refitted from the solution with PECP1 free.
 
     If PECP1 is held at a slightly wrong value, the other spin coefficients compensate for it, which distorts the effect of finite
-    spin on the slopes of the model.
+    spin on the slopes of the model. That effect is uncertain by a third of itself, so the search need not be exact.
     """
     name, problem = "PECP1", fitted.problem
     if any(number.name == name for number in fitted.numbers):
@@ -150,5 +151,6 @@ def with_free_epsilon(fitted: Fitted) -> Simulation:
     row, held = BY_NAME[name], float(fitted.simulation.values[name])
     free = FreeNumber(name, row.inside(held), *row.bounds, expected=held)
     numbers = [*problem.starting_here(fitted.numbers), free]
-    solution = solve(problem.free([n.name for n in numbers]), numbers)
+    free_problem = problem.free([n.name for n in numbers])
+    solution = solve(free_problem, numbers, tolerance=constants.REFIT_TOLERANCE)
     return problem.with_values(solution.values).simulation
