@@ -66,7 +66,8 @@ class MissedChannel(ReadOnlyArrays):
         """
         likeness, functions = self._functions(settings)
         likeness, functions = likeness * left.slip, functions * (left.load * left.slip)[:, None]
-        mean, reading = (np.sum(self._rows(functions, by) ** 2, axis=1) for by in (slopes * of_tyre, slopes))
+        rows = self._rows(functions, slopes * of_tyre, slopes)
+        mean, reading = (np.sum(one**2, axis=1) for one in rows)
         unlike = (1.0 - likeness**2) * (left.load * self.components.missed) ** 2
         return functions @ self.missed, mean + unlike, reading + unlike
 
@@ -77,14 +78,15 @@ class MissedChannel(ReadOnlyArrays):
     def u_between(self, settings: np.ndarray, slopes: np.ndarray) -> float:
         """Standard uncertainty of the force's difference between two conditions; ``settings`` and ``slopes`` as in :meth:`at`."""
         likeness, functions = self._functions(settings)
-        one, other = self._rows(functions, slopes)
+        ((one, other),) = self._rows(functions, slopes)
         unlike = np.sum(1.0 - likeness**2) * self.components.missed**2
         return float(np.sqrt(np.sum((one - other) ** 2) + unlike))
 
-    def _rows(self, functions: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-        """Root (n, r) of the covariance of the forces at conditions with these ``functions`` (n, m) and ``slopes`` (n, k)."""
+    def _rows(self, functions: np.ndarray, *slopes: np.ndarray) -> list[np.ndarray]:
+        """Roots (n, r) of the covariance of forces at conditions with these ``functions`` (n, m), for each ``slopes`` (n, k)."""
         of_functions, of_numbers = np.split(self.root, [len(self.missed)])
-        return np.asarray(functions @ of_functions + slopes @ of_numbers)
+        shared = functions @ of_functions
+        return [shared + one @ of_numbers for one in slopes]
 
     def _functions(self, settings: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Correlation (n,) with the model error at the nearest tested conditions, and the functions (n, m) times it."""
