@@ -76,7 +76,8 @@ def outlying(
         if miss is None:
             miss = np.empty((len(residual), 2))
             miss[used] = beside.likeliest(rows, sweep[used])
-        error, u = beside.predicted(rows, *miss[used[rows]].T)
+        length, size = miss[used[rows]].T
+        error, u = beside.predicted(rows, size, beside.alike(rows, length))
         z = np.zeros(len(used))
         z[rows] = np.abs(error) / u
         z[z <= far * max(robust_scale(z), 1.0)] = 0.0
@@ -116,14 +117,15 @@ class _Beside(NamedTuple):
         )
 
     def likeliest(self, rows: np.ndarray, sweep: np.ndarray) -> np.ndarray:
-        """Size and length (n, 2) of what the formula misses, by the predictions of some of the ``rows``.
+        """Length and size (n, 2) of what the formula misses, by the predictions of some of the ``rows``.
 
         They are those of all sweeps (n,), but for a sweep that others clearly suit better.
         """
         some = rows[:: max(1, len(rows) // int(constants.READINGS_OF_A_LENGTH))]
         sizes = robust_scale(self.residual) * np.array(constants.SIZES_OF_A_MISS)
-        tried = list(itertools.product(sizes.tolist(), constants.LENGTHS_OF_A_MISS))
-        each = np.array([self._log_likelihood(some, *one) for one in tried])
+        tried = list(itertools.product(constants.LENGTHS_OF_A_MISS, sizes.tolist()))
+        alike = {length: self.alike(some, length) for length in constants.LENGTHS_OF_A_MISS}
+        each = np.array([self._log_likelihood(some, size, alike[length]) for length, size in tried])
         names, of_sweep = np.unique(sweep[some], return_inverse=True)
         own = np.array([np.bincount(of_sweep, row, len(names)) for row in each])
         common = int(np.argmax(own.sum(axis=1)))
@@ -134,37 +136,46 @@ class _Beside(NamedTuple):
         found: np.ndarray = np.array(tried)[np.where(names[at] == sweep, best[at], common)]
         return found
 
+    def alike(self, rows: np.ndarray, length: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+        """Correlations of what the formula misses, for its ``length`` (m,): of some rows with their neighbours (m, k), and among
+        the neighbours (m, k, k).
+        """
+        inside, length = self.inside[rows], np.broadcast_to(length, len(rows))[:, None]
+        across = _matern(self.across[rows] / length) * inside
+        among = _matern(self.among[rows] / length[:, :, None])
+        return across, among * (inside[:, :, None] & inside[:, None, :])
+
     def predicted(
-        self, rows: np.ndarray, size: np.ndarray | float, length: np.ndarray | float
+        self, rows: np.ndarray, size: np.ndarray | float, alike: tuple[np.ndarray, np.ndarray]
     ) -> tuple[np.ndarray, np.ndarray]:
         """Errors (m,) of the predictions of some rows from their neighbours, and their standard deviations (m,).
 
-        ``size`` (m,) and ``length`` (m,) are those of what the formula misses.
+        ``size`` (m,) is that of what the formula misses, ``alike`` are its correlations.
         """
         there, inside = self.there[rows], self.inside[rows]
-        size, length = (np.broadcast_to(x, len(rows))[:, None] for x in (size, length))
-        across = _alike(self.across[rows], size, length) * inside
-        among = _alike(self.among[rows], size[:, :, None], length[:, :, None])
-        among *= inside[:, :, None] & inside[:, None, :]
+        variance = np.broadcast_to(size, len(rows))[:, None] ** 2
+        across, among = variance * alike[0], variance[:, :, None] * alike[1]
         own = np.arange(there.shape[1])
-        among[:, own, own] = np.where(inside, size**2 + self.noise[there] ** 2, 1.0)
+        among[:, own, own] = np.where(inside, variance + self.noise[there] ** 2, 1.0)
         weights = np.linalg.solve(among, across[:, :, None])[:, :, 0]
         error = self.residual[rows] - np.sum(weights * self.residual[there] * inside, axis=1)
-        variance = size[:, 0] ** 2 + self.noise[rows] ** 2 - np.sum(weights * across, axis=1)
-        return error, np.sqrt(variance)
+        left = variance[:, 0] + self.noise[rows] ** 2 - np.sum(weights * across, axis=1)
+        return error, np.sqrt(left)
 
-    def _log_likelihood(self, rows: np.ndarray, size: float, length: float) -> np.ndarray:
+    def _log_likelihood(
+        self, rows: np.ndarray, size: float, alike: tuple[np.ndarray, np.ndarray]
+    ) -> np.ndarray:
         """Log likelihood (m,) of the predictions of some rows, with tails so heavy that outliers do not count."""
-        error, u = self.predicted(rows, size, length)
+        error, u = self.predicted(rows, size, alike)
         return np.asarray(-np.log(u) - constants.TAILS_OF_A_MISS * np.log1p((error / u) ** 2 / 3.0))
 
 
 def _distances(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Distances of places, whose d conditions are on the last axis."""
-    return np.asarray(np.sqrt(np.sum((a - b) ** 2, axis=-1)))
+    """Distances of places, with d conditions on the last axis: over so short an axis, numpy sums in three times as long."""
+    return np.asarray(np.sqrt(sum((a[..., k] - b[..., k]) ** 2 for k in range(a.shape[-1]))))
 
 
-def _alike(distance: np.ndarray, size: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """Matern covariance of order 5/2 over a distance."""
-    d = math.sqrt(5.0) * distance / length
-    return np.asarray(size**2 * (1.0 + d + d**2 / 3.0) * np.exp(-d))
+def _matern(distance: np.ndarray) -> np.ndarray:
+    """Matern correlation of order 5/2 over a distance in lengths."""
+    d = math.sqrt(5.0) * distance
+    return np.asarray((1.0 + d + d**2 / 3.0) * np.exp(-d))
