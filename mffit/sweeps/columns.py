@@ -60,26 +60,16 @@ class _Source(NamedTuple):
     heading: str
     mapped: Column | None  #: unit and scale that ``tyre.toml`` gives; None if it does not name this heading
     may_have_gaps: bool
+    warnings: list[str]  #: sentences about this and the columns before it
 
     @property
     def cells(self) -> Cells:
         return self.raw.column(self.heading)
 
-    @property
-    def stated_unit(self) -> str:
-        return self.raw.unit(self.heading)
-
     def refusal(self, sentence: str, row: int) -> InputError:
         """The error about a cell of this column."""
         line = int(self.raw.lines[row])
         return InputError(sentence, file=self.raw.path, line=line, column=self.heading)
-
-
-class _Read(NamedTuple):
-    """A column in the contract's unit."""
-
-    values: np.ndarray  #: (n,)
-    warnings: tuple[str, ...] = ()
 
 
 def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collection[str] = ()) -> Columns:
@@ -93,24 +83,20 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
 
     Raises InputError if a column is missing, a cell is not a finite number, or a value is outside its plausible range.
     """
-    mapping = {
-        name: column
-        for name, column in mapping.items()
-        if column.value is None or not (name in shared and name in raw.headings)
-    }
+    mapping = {name: one for name, one in mapping.items() if name not in shared or _applies(name, one, raw)}
     given = {name: column.value for name, column in mapping.items() if column.value is not None}
     raw = with_values(raw, given) if given else raw
-    headings = _headings(raw, mapping, shared)
+    headings = _headings(raw, mapping)
     found: dict[str, np.ndarray] = {}
     raw, warnings = _without_rows_that_are_none(raw, headings)
     raw, at_rest = _without_standstill(raw, headings)
     for channel in SWEEP_CHANNELS:
         if channel.name not in headings:
             continue
-        read = _read(_source(raw, channel, headings, mapping))
-        if read is not None:
-            found[channel.name] = read.values
-            warnings += read.warnings
+        name, gaps = channel.name, "time_s" in headings and channel.name != "time_s"
+        values = _read(_Source(raw, channel, headings[name], mapping.get(name), gaps, warnings))
+        if values is not None:
+            found[name] = values
     taken = {*headings, *headings.values()}
     extras = {heading: raw.column(heading) for heading in raw.headings if heading not in taken}
     warnings += _misspelt(raw, extras, found)
@@ -172,12 +158,17 @@ def _is_of_numbers(cells: Cells) -> bool:
     return bool(2 * np.sum(np.isfinite(numbers(cells))) > len(cells))
 
 
-def _headings(raw: RawTable, mapping: Mapping[str, Column], shared: Collection[str]) -> dict[str, str]:
+def _applies(name: str, column: Column, raw: RawTable) -> bool:
+    """Whether a key of ``[columns]``, which is for all files, holds for this one."""
+    if column.value is not None:
+        return name not in raw.headings
+    in_file = (column.column or name) in raw.headings
+    return in_file or (BY_NAME[name].required and name not in raw.headings)
+
+
+def _headings(raw: RawTable, mapping: Mapping[str, Column]) -> dict[str, str]:
     """The heading of every contract column that the file has."""
     headings = {name: column.column or name for name, column in mapping.items()}
-    for name in set(shared) & set(headings):
-        if headings[name] not in raw.headings and (name in raw.headings or not BY_NAME[name].required):
-            del headings[name]
     for channel in SWEEP_CHANNELS:
         if channel.name not in headings and channel.name in raw.headings:
             headings[channel.name] = channel.name
@@ -223,23 +214,8 @@ def _missing(raw: RawTable, channels: Sequence[Channel]) -> InputError:
     return InputError(said, file=raw.path, line=raw.heading_line, column=first)
 
 
-def _source(
-    raw: RawTable, channel: Channel, headings: Mapping[str, str], mapping: Mapping[str, Column]
-) -> _Source:
-    mapped, heading = mapping.get(channel.name), headings[channel.name]
-    if mapped is not None and heading != (mapped.column or channel.name):
-        mapped = None
-    return _Source(
-        raw=raw,
-        channel=channel,
-        heading=heading,
-        mapped=mapped,
-        may_have_gaps="time_s" in headings and channel.name != "time_s",
-    )
-
-
-def _read(source: _Source) -> _Read | None:
-    """One column in the contract's unit; None if all its cells are blank."""
+def _read(source: _Source) -> np.ndarray | None:
+    """The values (n,) of a column in the contract's unit; None if all its cells are blank."""
     cells, channel = source.cells, source.channel
     if _all_blank(cells):
         if channel.required:
@@ -247,22 +223,18 @@ def _read(source: _Source) -> _Read | None:
         return None
     if channel.kind == "label":
         different, where = np.unique(np.asarray(cells), return_inverse=True)
-        return _Read(np.array([text_of(cell) for cell in different.tolist()], dtype=object)[where])
+        return np.array([text_of(cell) for cell in different.tolist()], dtype=object)[where]
     if channel.kind == "direction":
-        return _Read(_directions(source))
-    stated = _Read(_numbers(source))
-    if channel.name == "time_s" and np.any(np.isnan(stated.values)):
-        stated = _without_missing_times(source, stated.values)
-    read = _in_range(source, _in_contract_unit(source, stated.values))
-    read = read._replace(warnings=(*stated.warnings, *read.warnings))
-    return _positive(source, read) if channel.name in UNCERTAINTIES else read
+        return _directions(source)
+    values = _numbers(source)
+    if channel.name == "time_s" and np.any(np.isnan(values)):
+        values = _without_missing_times(source, values)
+    values = _in_range(source, _in_contract_unit(source, values))
+    return _positive(source, values) if channel.name in UNCERTAINTIES else values
 
 
-def _without_missing_times(source: _Source, time: np.ndarray) -> _Read:
-    """The times of the samples, none missing, and a sentence about those that were interpolated.
-
-    Raises InputError that names all samples whose time the others do not tell.
-    """
+def _without_missing_times(source: _Source, time: np.ndarray) -> np.ndarray:
+    """The times of the samples; missing ones are interpolated, or refused if those before and after do not determine them."""
     complete = with_missing_times(time)
     untold = np.isnan(complete)
     missing = untold if np.any(untold) else np.isnan(time)
@@ -275,7 +247,8 @@ def _without_missing_times(source: _Source, time: np.ndarray) -> _Read:
             "remove the rows"
         )
         raise source.refusal(sentence, row)
-    return _Read(complete, (str(source.refusal(f"{said}; interpolated at the rate of the recording", row)),))
+    source.warnings.append(str(source.refusal(f"{said}; interpolated at the rate of the recording", row)))
+    return complete
 
 
 def with_missing_times(time: np.ndarray) -> np.ndarray:
@@ -374,7 +347,7 @@ def _in_contract_unit(source: _Source, values: np.ndarray) -> np.ndarray:
     """Values in the contract's unit, from the unit that ``tyre.toml`` names, else from that of the file."""
     channel, mapped = source.channel, source.mapped
     scale, named = (1.0, None) if mapped is None else (mapped.scale, mapped.unit)
-    unit = named or source.stated_unit
+    unit = named or source.raw.unit(source.heading)
     if not unit:
         return scale * values
     try:
@@ -387,22 +360,19 @@ def _in_contract_unit(source: _Source, values: np.ndarray) -> np.ndarray:
         raise InputError(sentence, file=raw.path, line=raw.heading_line, column=source.heading) from None
 
 
-def _in_range(source: _Source, values: np.ndarray) -> _Read:
-    """The values, checked against the plausible range; rare spikes of a recording become NaN.
-
-    Raises InputError if more values are outside the range than spikes explain.
-    """
+def _in_range(source: _Source, values: np.ndarray) -> np.ndarray:
+    """The values, checked against the plausible range; rare spikes of a recording become NaN, and more are refused."""
     channel = source.channel
     outside = _outside(values, channel)
     if not np.any(outside):
-        return _Read(values)
+        return values
     row, count = int(outside.argmax()), int(outside.sum())
     unit = f" {channel.unit}" if channel.unit else ""
     sentence = f"{values[row]:g}{unit} is outside {channel.lower:g} to {channel.upper:g}{unit}"
     if not implausible(values, channel, may_have_gaps=source.may_have_gaps):
         also = f" (with {count - 1} more)" if count > 1 else ""
-        warning = source.refusal(f"{sentence}{also}; treated as missing", row)
-        return _Read(np.where(outside, np.nan, values), (str(warning),))
+        source.warnings.append(str(source.refusal(f"{sentence}{also}; treated as missing", row)))
+        return np.where(outside, np.nan, values)
     hint = channel.below if values[row] < channel.lower else channel.above
     remedy = f"{hint}, convert it or name its unit under [sweep.columns]" if hint else "correct it"
     raise source.refusal(f"{sentence}; {remedy}", row)
@@ -418,25 +388,22 @@ def implausible(values: np.ndarray, channel: Channel, *, may_have_gaps: bool) ->
     return bool(np.sum(_outside(values, channel)) > share * len(values))
 
 
-def _positive(source: _Source, read: _Read) -> _Read:
+def _positive(source: _Source, u: np.ndarray) -> np.ndarray:
     """Uncertainties, with NaN for values not above zero, because a point without uncertainty would outweigh all others."""
-    wrong = read.values <= 0.0
+    wrong = u <= 0.0
     if not np.any(wrong):
-        return read
+        return u
     row, count = int(wrong.argmax()), int(wrong.sum())
-    if not np.any(read.values > 0.0):
+    if not np.any(u > 0.0):
         raise source.refusal(
             "is not above zero in any row, as a standard uncertainty must be; complete or remove the column",
             row,
         )
     also = f" here and in {count - 1} more {'row' if count == 2 else 'rows'}" if count > 1 else ""
-    warning = source.refusal(f"{read.values[row]:g} is not above zero; treated as not stated{also}", row)
-    return _Read(np.where(wrong, np.nan, read.values), (*read.warnings, str(warning)))
-
-
-def _is_constant(cells: Cells) -> bool:
-    """Whether an unused column of numbers has one value in all rows."""
-    return isinstance(cells, np.ndarray) and bool(np.all(cells == cells[0]))
+    source.warnings.append(
+        str(source.refusal(f"{u[row]:g} is not above zero; treated as not stated{also}", row))
+    )
+    return np.where(wrong, np.nan, u)
 
 
 def _misspelt(raw: RawTable, extras: Mapping[str, Cells], found: Mapping[str, object]) -> list[str]:
@@ -444,6 +411,7 @@ def _misspelt(raw: RawTable, extras: Mapping[str, Cells], found: Mapping[str, ob
     sentences = []
     for heading, cells in extras.items():
         near = nearest_channel(heading, likeness=constants.LIKENESS_OF_UNUSED_HEADING)
-        if near and near not in found and not _is_constant(cells):
+        is_constant = isinstance(cells, np.ndarray) and bool(np.all(cells == cells[0]))
+        if near and near not in found and not is_constant:
             sentences.append(f'{raw.path}: column "{heading}" is not used; if it is {near}, rename it')
     return sentences
