@@ -118,40 +118,39 @@ def _text(tables: Sequence[Sequence[str]]) -> str:
     return "\n\n".join("\n".join(lines) for lines in tables) + "\n"
 
 
+OF_TYRE = (
+    ("size", "", "as the recording names the tyre"),
+    ("width", "m", ", as the size says"),
+    ("rim_radius", "m", ", as the size says"),
+    ("unloaded_radius", "m", ""),
+    ("nominal_load", "N, FNOMIN", ""),
+    ("nominal_pressure", "kPa, NOMPRES", ": the most frequent pressure"),
+    ("nominal_speed", "m/s, LONGVL", ": the most frequent speed"),
+)
+"""Keys of [tyre] with their unit and the source of a value that recordings give without stating it."""
+
+
 def _tyre(sniffed: Sniffed, folder: Path, stated: Stated) -> Iterator[str]:
     """The lines of [tyre]; a stated value equal to that of the recordings gets the comment that names them as source."""
-    found = tyre_found(sniffed, folder)
-    of_files = {key: f", {one.why}" for key, one in stated_of_tyre(sniffed).items()}
-
-    def line(key: str, unit: str, why: str = "", doubt: str = "") -> Iterator[str]:
-        value, own = getattr(stated, key), getattr(found, key)
-        if value is None or value == own:
-            value, unit = own, unit + why
-        comment = "; ".join(filter(None, (unit, _one_line(doubt))))
-        if value is not None:
-            yield f"{key} = {_value(value)}" + f"  # {comment}" * bool(comment)
-
-    def asked(key: str, unit: str, why: str = "", doubt: str = "") -> Iterator[str]:
-        yield from [*line(key, unit, of_files.get(key, why), doubt)] or [_given(key, None, unit)]
-
+    found, of_files = tyre_found(sniffed, folder), stated_of_tyre(sniffed)
     title = next((title for r in sniffed.recordings if (title := title_of(r.about))), "")
+    load = found.nominal_load if stated.nominal_load is None else stated.nominal_load
+    doubts = {"nominal_load": _one_line(load_beyond(sniffed, load))}
     yield f"name = {quoted(stated.name or str(found.name))}"
     if title and not (stated.size or found.size):
         yield f'# size = ""  # the title of the recording is: {_one_line(title)[:MOST_OF_SIZE]}'
-    yield from line("size", "", "as the recording names the tyre")
-    for key in ("width", "rim_radius"):
-        yield from line(key, "m", ", as the size says")
-    yield from asked("unloaded_radius", "m")
-    load = found.nominal_load if stated.nominal_load is None else stated.nominal_load
-    yield from asked("nominal_load", "N, FNOMIN", doubt=load_beyond(sniffed, load))
-    yield from asked("nominal_pressure", "kPa, NOMPRES", ": the most frequent pressure")
-    yield from line("nominal_speed", "m/s, LONGVL", ": the most frequent speed")
+    for key, unit, why in OF_TYRE:
+        value, own, note = getattr(stated, key), getattr(found, key), unit
+        if value is None or value == own:
+            value, note = own, unit + (f", {of_files[key].why}" if key in of_files else why)
+        comment = "; ".join(filter(None, (note, doubts.get(key))))
+        if value is not None:
+            text = quoted(value) if isinstance(value, str) else f"{value:g}"
+            yield f"{key} = {text}" + f"  # {comment}" * bool(comment)
+        elif TyreTable.model_fields[key].is_required():
+            yield f"# {key} =   # {unit}: fill this in"
     if stated.side not in (None, TyreTable.model_fields["side"].default):
         yield f"side = {quoted(str(stated.side))}"
-
-
-def _value(value: str | float) -> str:
-    return quoted(value) if isinstance(value, str) else f"{value:g}"
 
 
 def _of_size(tyre: str) -> tuple[float | None, float | None]:
@@ -210,7 +209,7 @@ def _path(sniffed: Sniffed, disc: DiscPath | None, belt: bool) -> list[str]:
     return [
         f'type = "rotating-disk"  # it looks like a disc: {_one_line("; ".join(signs))}',
         '# path_centre =   # "left" or "right", where the disc\'s centre is, seen rolling forwards: fill this in',
-        _given("path_radius", None, "m"),
+        "# path_radius =   # m: fill this in",
     ]
 
 
@@ -241,19 +240,14 @@ def _sweeps(
     ]
 
 
-def _content(recording: SniffedRecording, shared: Mapping[str, Column]) -> tuple[str, ...]:
+def _content(recording: SniffedRecording, shared: Mapping[str, Column]) -> Iterator[str]:
     """The lines of a recording's [[sweep]] after ``file``: direction, and columns that differ from [columns]."""
-    own = {name: guess for name, guess in recording.guesses.items() if guess.column != shared.get(name)}
-    return (
-        *([f'direction = "backward"  # {_why_backward(recording)}'] if recording.backward else []),
-        *(["[sweep.columns]", *(_column(guess) for guess in own.values())] if own else []),
-    )
-
-
-def _why_backward(recording: SniffedRecording) -> str:
-    if rolls_backward(recording.path):
-        return "from the name of the file"
-    return "from the sign of the speed" if speed_is_negative(recording.guesses) else "as chosen"
+    if recording.backward:
+        of_speed = "from the sign of the speed" if speed_is_negative(recording.guesses) else "as chosen"
+        of_name = "from the name of the file" if rolls_backward(recording.path) else ""
+        yield f'direction = "backward"  # {of_name or of_speed}'
+    own = [_column(guess) for name, guess in recording.guesses.items() if guess.column != shared.get(name)]
+    yield from ["[sweep.columns]", *own] if own else []
 
 
 def _comments(remarks: Iterable[str]) -> list[str]:
@@ -318,10 +312,6 @@ def _column(guess: Guess) -> str:
         stated = f"in {guess.stated}, as the file says" if guess.stated and guess.channel.unit else ""
         note = "; ".join(part for part in (stated, guess.why) if part)
     return f"{text}  # {_one_line(note)}" if note else text
-
-
-def _given(key: str, value: float | None, unit: str) -> str:
-    return f"# {key} =   # {unit}: fill this in" if value is None else f"{key} = {value:g}  # {unit}"
 
 
 def quoted(text: str) -> str:
