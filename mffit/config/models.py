@@ -304,8 +304,8 @@ def _setup_name(name: str) -> str:
 SetupName = Annotated[str, AfterValidator(_setup_name)]
 
 
-class SweepTable(Table):
-    """[[sweep]]: one file."""
+class SetupTable(Table):
+    """The keys of a [[sweep]] that say on which set-up of the rig, and which way, it was run."""
 
     file: str
     direction: Literal["forward", "backward"] | None = None
@@ -315,6 +315,11 @@ class SweepTable(Table):
     path_radius: q.PathRadius | None = None  #: [m]; None: that of [rig]
     setup: SetupName | None = None
     """Sweeps between which the rig was not set up anew; None: one per path."""
+
+
+class SweepTable(SetupTable):
+    """[[sweep]]: one file."""
+
     columns: Columns = Field(default_factory=dict)
 
 

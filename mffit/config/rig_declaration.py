@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from mffit.config.models import Config, RigTable, SweepTable
+from mffit.config.models import Config, RigTable, SetupTable
 from mffit.rig_errors import DECLARED, Faults
 from tir.conventions import sign
 
@@ -18,7 +18,7 @@ def axis_signs(config: Config) -> dict[str, float]:
     return {channel: sign(config.rig.axes, channel) for channel in CHANNELS_WITH_SIGN}
 
 
-def path_curvature(rig: RigTable, sweep: SweepTable | None = None) -> float:
+def path_curvature(rig: RigTable, sweep: SetupTable | None = None) -> float:
     """Turn slip phi_t of the usual path, or of that of a sweep [1/m]: -1/R with the centre to the left, 1/R to the right, 0
     straight.
     """
@@ -30,7 +30,7 @@ def path_curvature(rig: RigTable, sweep: SweepTable | None = None) -> float:
     return (-1.0 if centre == "left" else 1.0) / radius
 
 
-def setup_names(rig: RigTable, sweeps: Sequence[SweepTable]) -> tuple[str, ...]:
+def setup_names(rig: RigTable, sweeps: Sequence[SetupTable]) -> tuple[str, ...]:
     """Name of the set-up of every sweep, in their order; a sweep that names none belongs to the set-up of its path.
 
     Empty names if none is declared and all sweeps ran on one path: one set-up.

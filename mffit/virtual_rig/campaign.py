@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 
 from mffit.config import RigTable, declared_faults, declared_rig
+from mffit.config.models import SetupTable
 from mffit.errors import InputError
 from mffit.rig_errors import BY_NAME, ZEROS, Faults, number_of
 from mffit.virtual_rig.machine import Channels, Machine, steady
@@ -179,7 +180,10 @@ def _direct(plan: RigPlan, machine: Machine, load: float) -> DirectTruth:
 def configuration_of(plan: RigPlan, machine: Machine, generator: np.random.Generator) -> dict[str, Any]:
     """The content of tyre.toml: the declaration, the measured rolling radii and the sweeps."""
     content = plan.declared.model_dump(exclude_unset=True)
-    content["sweep"] = [_sweep_entry(sweep) for sweep in plan.tables.sweep]
+    content["sweep"] = [
+        sweep.model_dump(include=set(SetupTable.model_fields), exclude_defaults=True)
+        for sweep in plan.tables.sweep
+    ]
     radii = [
         written_down(
             row, _direct(plan, machine, row.load_N).r_e_m, machine.faults["path_radius_m"], generator
@@ -199,12 +203,6 @@ def configuration_of(plan: RigPlan, machine: Machine, generator: np.random.Gener
     order = dict.fromkeys([*first, *(name for name in LEADING if name in content), *content])
     order = dict.fromkeys([*(name for name in order if name != "sweep"), "sweep"])
     return {name: content[name] for name in order if content[name] not in ({}, [], ())}
-
-
-def _sweep_entry(sweep: SweepPlan) -> dict[str, Any]:
-    names = ("file", "direction", "mount", "path_centre", "path_radius", "setup")
-    entry = {name: getattr(sweep, name) for name in names}
-    return {key: value for key, value in entry.items() if value not in ("forward", "normal", None)}
 
 
 def written_down(

@@ -23,7 +23,7 @@ from pydantic import (
 from mffit.config import Config, path_curvature, setup_names
 from mffit.config import quantities as q
 from mffit.config import uncertainty as stated
-from mffit.config.models import SetupName, SweepTable
+from mffit.config.models import SetupTable
 from mffit.config.table import Table, list_of_tables
 from mffit.rig_errors import BY_NAME as RIG_ERROR_NAMES
 from mffit.rig_errors import RIG_ERRORS, RigError
@@ -167,10 +167,9 @@ class RecordingTable(Table):
     ripple_Mz_Nm: NonNegativeFloat = 0.0
 
 
-class SweepPlan(Table):
+class SweepPlan(SetupTable):
     """[[sweep]]: set-points; slip runs fastest, then sideslip, camber, load, pressure and speed."""
 
-    file: str
     load_N: Loads
     alpha_deg: Angles = (0.0,)
     gamma_deg: Angles = (0.0,)
@@ -180,11 +179,6 @@ class SweepPlan(Table):
     p_kPa: Pressures | None = None
     V_mps: Speeds | None = None
     T_degC: Angles | None = None  #: one temperature, or those of the first and the last point
-    direction: Literal["forward", "backward"] = "forward"
-    mount: Literal["normal", "flipped"] = "normal"
-    path_centre: Literal["left", "right"] | None = None  #: None: the declared one
-    path_radius: q.PathRadius | None = None  #: [m]; the declared one if not given
-    setup: SetupName | None = None  #: as in tyre.toml; None: one per path
     faults: OwnFaultsTable = OwnFaultsTable()
     recording: RecordingTable | None = None
 
@@ -242,22 +236,15 @@ class RigPlan:
 
     def path(self, sweep: SweepPlan) -> float:
         """Turn slip of a sweep's path as declared [1/m]; 0 on a flat track."""
-        return path_curvature(self.declared.rig, _entry(sweep))
+        return path_curvature(self.declared.rig, sweep)
 
     @property
     def setups(self) -> tuple[str, ...]:
         """Name of the set-up of every sweep, empty if there is only one."""
-        return setup_names(self.declared.rig, [_entry(sweep) for sweep in self.tables.sweep])
+        return setup_names(self.declared.rig, self.tables.sweep)
 
     @property
     def reports_slip(self) -> bool:
         """Whether the rig has a column of longitudinal slip."""
         tables = self.tables
         return tables.noise.Fx_N is not None or any(sweep.kappa != (0.0,) for sweep in tables.sweep)
-
-
-def _entry(sweep: SweepPlan) -> SweepTable:
-    """The sweep as tyre.toml declares it."""
-    return SweepTable(
-        file=sweep.file, path_centre=sweep.path_centre, path_radius=sweep.path_radius, setup=sweep.setup
-    )

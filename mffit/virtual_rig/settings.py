@@ -97,7 +97,7 @@ def _settings(plan: RigPlan, sweep: SweepPlan, begins: int, pause: float) -> Set
         V=V,
         T=np.linspace(temperatures[0], temperatures[-1], n),
         t=pause * (begins + np.arange(n)),
-        direction=np.full(n, 1 if sweep.direction == "forward" else -1),
+        direction=np.full(n, -1 if sweep.direction == "backward" else 1),
         mount=np.full(n, 1 if sweep.mount == "normal" else -1),
         rolled_m=np.zeros(n),
         side=float(np.sign(plan.path(sweep) * plan.phi_t_sign)),

@@ -9,13 +9,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
-
 import tir
 from mffit.config.toml_file import toml_text
 from mffit.csv_tables import csv_text
 from mffit.output import output_folder
-from mffit.virtual_rig.campaign import Campaign, run
+from mffit.virtual_rig.campaign import run
 from mffit.virtual_rig.loading import load_plan
 from mffit.virtual_rig.plan import RigPlan
 from mffit.virtual_rig.truth import Truth
@@ -47,7 +45,14 @@ def simulate(
     read += [path for path in (plan.tyre_path, plan.declared.base_path) if path is not None]
     campaign = run(plan, tir.read(plan.tyre_path), seed)
     with output_folder(Path(out), by="simulate", protected=read) as folder:
-        write(campaign, plan, folder)
+        for name, table in campaign.tables.items():
+            text = csv_text(table).encode()  # equal tables make equal files, packed or not
+            (folder / name).write_bytes(gzip.compress(text, mtime=0) if name.endswith(".gz") else text)
+        (folder / "tyre.toml").write_text(configuration_text(campaign.configuration), encoding="utf-8")
+        truth = json.dumps(campaign.truth.to_json(), indent=2, allow_nan=False)
+        (folder / TRUTH).write_text(truth + "\n", encoding="utf-8")
+        if plan.declared.base_path is not None:
+            shutil.copyfile(plan.declared.base_path, folder / plan.declared.base_path.name)
     return campaign.truth
 
 
@@ -55,25 +60,7 @@ TRUTH = "truth.json"
 """Name of the file with the true values behind the data."""
 
 
-def write(campaign: Campaign, plan: RigPlan, folder: Path) -> None:
-    """Write sweeps, ``tyre.toml``, ``truth.json`` and a copy of the base file into an existing folder."""
-    for name, table in campaign.tables.items():
-        write_table(table, folder / name)
-    (folder / "tyre.toml").write_text(configuration_text(campaign.configuration), encoding="utf-8")
-    truth = json.dumps(campaign.truth.to_json(), indent=2, allow_nan=False)
-    (folder / TRUTH).write_text(truth + "\n", encoding="utf-8")
-    base = plan.declared.base_path
-    if base is not None:
-        shutil.copyfile(base, folder / base.name)
-
-
 def configuration_text(configuration: Mapping[str, Any]) -> str:
     """The text of tyre.toml."""
     head = "# Written by `mffit simulate`; truth.json holds the true values behind these data.\n"
     return f"{head}\n{toml_text(configuration)}"
-
-
-def write_table(table: pd.DataFrame, path: Path) -> None:
-    """Write a table as CSV, compressed if the name ends in .gz; equal tables make equal files."""
-    text = csv_text(table).encode()
-    path.write_bytes(gzip.compress(text, mtime=0) if path.suffix == ".gz" else text)
