@@ -193,6 +193,7 @@ def _fitted_and_judged(
 
 def _epsilon_gamma(values: Mapping[str, Any], points: Points, measured: Measured) -> float | None:
     """eps_gamma of the fitted model; None on a flat track."""
-    if measured.epsilon_gamma is None or measured.r_e is None:
+    row = measured.nominal
+    if row is None or row.epsilon_gamma is None or row.r_e is None:
         return None
-    return epsilon_gamma_of_model(values, points, measured.F_phit_load, measured.r_e.value)
+    return epsilon_gamma_of_model(values, points, row.load, row.r_e.value)

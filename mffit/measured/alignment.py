@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from uncertainties import UFloat, ufloat
 
-from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.errors import InputError
 from mffit.measured import wording
 from mffit.measured.axis import usual_stiffness
@@ -22,7 +21,6 @@ def align(
     points: Points,
     *,
     axes: str = "iso",
-    C_alpha: float | None = None,
     measured: Mapping[float, Quantity] | None = None,
     resolution_deg: float = 0.0,
 ) -> Alignment:
@@ -30,8 +28,8 @@ def align(
 
     The points are corrected for the play and have rows at zero sideslip and camber in both directions; ``iteration`` numbers
     repeated steps. If the usual path has several set-ups, the last one is aligned. ``measured`` is the cornering stiffness by
-    load [N], used if its relative uncertainty is the smallest; else ``C_alpha`` per load [1/rad], positive, default 10. The
-    axis can be turned by ``resolution_deg`` at the smallest [deg].
+    load [N], used if its relative uncertainty is the smallest; otherwise it is that of two steps or the usual one. The axis
+    can be turned in steps of ``resolution_deg`` [deg].
 
     Raises InputError if zeros of one direction are missing.
     """
@@ -41,24 +39,20 @@ def align(
         usual = group.of(on_usual[group.index])
         setup = points.setup[usual.index]
         usual = usual.of(setup == setup.max(initial=0))
-        steps += _steps(
-            points, usual, axes, C_alpha or USUAL_CORNERING_STIFFNESS, (measured or {}).get(group.load)
-        )
+        steps += _steps(points, usual, axes, (measured or {}).get(group.load))
     if not steps:
         raise InputError(
             "no load has both forward and backward points at zero sideslip and camber: add rows with direction "
             "forward and backward"
         )
     setups = np.unique(points.setup[on_usual])
-    last = [wording.last_is_aligned(points.setups[setups[-1]])] if len(setups) > 1 else []
+    last = [wording.LAST_IS_ALIGNED.format(name=points.setups[setups[-1]])] if len(setups) > 1 else []
     return Alignment(tuple(steps), tuple(last), resolution_deg)
 
 
-def _steps(
-    points: Points, group: LoadGroup, axes: str, guess: float, measured: Quantity | None
-) -> Iterator[AlignmentStep]:
+def _steps(points: Points, group: LoadGroup, axes: str, measured: Quantity | None) -> Iterator[AlignmentStep]:
     """The iterations at one load, on one path and in one set-up."""
-    guessed = usual_stiffness(group.load, guess)
+    guessed = usual_stiffness(group.load)
     known = [] if measured is None else [("measured", ufloat(measured.value, measured.u))]
     iteration = np.nan_to_num(points.iteration[group.index], nan=1.0).astype(int)
     before: tuple[UFloat, float] | None = None  # slip force, and the correction that was then applied [rad]

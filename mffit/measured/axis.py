@@ -48,9 +48,9 @@ def slope_at(C_alpha: UFloat | None, load: float) -> float:
     return float((usual_stiffness(load) if C_alpha is None else C_alpha).nominal_value)
 
 
-def usual_stiffness(load: float, of_load: float = USUAL_CORNERING_STIFFNESS) -> UFloat:
-    """A cornering stiffness [N/rad] that was not measured, from its size ``of_load`` [1/rad] per load [N]."""
-    size = of_load * load
+def usual_stiffness(load: float) -> UFloat:
+    """The usual cornering stiffness [N/rad] at a load [N], for one that was not measured."""
+    size = USUAL_CORNERING_STIFFNESS * load
     return named(-size, constants.GUESSED_STIFFNESS_U * size, "usual cornering stiffness", "N/rad")
 
 

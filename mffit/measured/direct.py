@@ -58,6 +58,7 @@ from mffit.parts import Parts
 from mffit.points import Points, levels, main_pressure
 from mffit.quantities import DIRECT
 from mffit.rig_errors import BY_NAME, DECLARED, AtZero, Declared, RigError
+from mffit.rounding import ascii_only, stated
 from mffit.scatter import ALARM
 from tir import Quantity, Tyre
 
@@ -89,7 +90,8 @@ def measure(
     per_load = sorted([*measured, *_of_model_alone(after, measured)], key=lambda row: row.load)
     epsilons = {x.row.load: x.epsilon for x in of_loads if x.row is not None and x.epsilon is not None}
     row, law, notes, of_nominal = _at_nominal(evidence, per_load, epsilons)
-    stated = judge(MeasuredFacts(row, evidence.zeros, evidence.drift)) if judge else SpinStatement()
+    lag = one_way_lag(points, config.tyre.unloaded_radius)
+    stated = judge(MeasuredFacts(row, evidence.zeros, evidence.drift, lag)) if judge else SpinStatement()
     left = config.rig.u("alpha_0_deg")
     on_disc = None if law is None else row
     troubles = chain(*(said for *_, said in slopes), *(found.troubles for found in of_loads), of_nominal)
@@ -105,7 +107,7 @@ def measure(
         setup_scatter=evidence.scatter,
         sideslip_zeros=evidence.zeros,
         drift=evidence.drift,
-        lag=one_way_lag(points, config.tyre.unloaded_radius),
+        lag=lag,
         misaligned_setups=_misaligned_setups(evidence, on_disc) if on_disc else {},
         axis_off=on_disc is not None and on_disc.axis_off(left),
         camber_skew=evidence.skew,
@@ -407,7 +409,8 @@ def _if_steering_yields(config: Config, row: LoadResult) -> list[str]:
     if C_alpha is None or config.rig.u(COMPLIANCE.name) > 0.0:
         return []
     change = abs(usual * row.yields)
-    return [wording.steering(usual, change)] if change > abs(C_alpha.u / C_alpha.value) else []
+    said = wording.STEERING.format(compliance=usual, percent=100.0 * change)
+    return [said] if change > abs(C_alpha.u / C_alpha.value) else []
 
 
 def _skew_warning(evidence: DirectEvidence) -> list[str]:
@@ -417,7 +420,12 @@ def _skew_warning(evidence: DirectEvidence) -> list[str]:
         return []
     declared = max(evidence.config.rig.u(error.name) for error, _ in adding_to_camber())
     beyond = abs(skew.value) > ALARM * math.hypot(declared, skew.u)
-    return [wording.camber_skew_beyond(skew, declared)] if beyond else []
+    said = wording.CAMBER_SKEW_BEYOND.format(skew=_stated(skew), declared=declared, unit=skew.unit)
+    return [said] if beyond else []
+
+
+def _stated(found: Quantity) -> str:
+    return ascii_only(stated(found, found.unit))
 
 
 def adding_to_camber() -> tuple[tuple[RigError, Declared], ...]:
@@ -431,8 +439,8 @@ def _notes(evidence: DirectEvidence, row: LoadResult, load_note: str) -> tuple[s
     nominal = 1e3 * evidence.config.tyre.nominal_pressure
     near = abs(used - nominal) < levels.PRESSURE.tolerance
     return (
-        *([wording.camber_skew(evidence.skew)] if evidence.skew else []),
-        *([] if row.conicity is None else [wording.conicity_measured(row.conicity)]),
+        *([wording.CAMBER_SKEW.format(skew=_stated(evidence.skew))] if evidence.skew else []),
+        *([] if row.conicity is None else [wording.CONICITY.format(conicity=_stated(row.conicity))]),
         load_note,
-        *([] if near else [wording.off_nominal_pressure(used, nominal)]),
+        *([] if near else [wording.OFF_NOMINAL_PRESSURE.format(used=used / 1e3, nominal=nominal / 1e3)]),
     )

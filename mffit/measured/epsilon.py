@@ -127,11 +127,12 @@ def load_dependence(
     u_pecp2 = u / max(abs(pecp1), 1e-12)
     most = max(pecp1 + slope * (load - loads[nominal]) / Fz0 for load in loads)
     if abs(slope) <= COVERAGE_FACTOR_95 * u:
-        why = wording.slope_in_noise(slope, u)
+        why = wording.SLOPE_IN_NOISE.format(slope=slope, twice=2.0 * u)
     elif abs(pecp1) <= COVERAGE_FACTOR_95 * at_nominal.std_dev:
         why = wording.EPSILON_IN_NOISE
     elif most >= LARGEST_CAMBER_REDUCTION:
-        why = wording.slope_too_steep(most)
+        why = wording.SLOPE_TOO_STEEP.format(largest=most)
     else:
-        return LoadDependence(slope / pecp1, u_pecp2, wording.load_slope(slope / pecp1, u_pecp2))
+        pecp2 = slope / pecp1
+        return LoadDependence(pecp2, u_pecp2, wording.LOAD_SLOPE.format(pecp2=pecp2, u=u_pecp2))
     return LoadDependence(0.0, u_pecp2, why)

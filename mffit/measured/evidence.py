@@ -51,9 +51,7 @@ class DirectEvidence(ReadOnlyArrays):
     shares: SweepShares | None = None  #: relative deviations of the sweeps' forces, if they drift
     axes: Mapping[str, SetupAngle] = field(default_factory=dict)
     """alpha_M of every set-up that was run both ways."""
-    skew: Quantity | None = (
-        None  #: measured rig error that adds to the camber stiffness, in its declared unit
-    )
+    skew: Quantity | None = None  #: measured rig error that adds to the camber stiffness, in its own unit
     scatter: SetupScatter | None = None  #: of repeated set-ups
     zeros: tuple[SideslipZeros, ...] = ()  #: consistency of the sideslip zeros of every set-up
     drift: Drift | None = None  #: between sweeps; None if the temperature varies, which may explain it

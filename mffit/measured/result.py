@@ -281,6 +281,7 @@ class MeasuredFacts(NamedTuple):
     nominal: LoadResult | None
     sideslip_zeros: tuple[SideslipZeros, ...]
     drift: Drift | None
+    lag: OneWayLag | None
 
 
 class SpinStatement(NamedTuple):
@@ -310,9 +311,7 @@ class Measured(Brief):
     """By set-up whose alpha_M exceeds the alignment uncertainty, alpha_M at the nominal load [rad]."""
     axis_off: bool = False  #: whether moreover the misalignment of the axis is clearly not zero
     camber_skew: Quantity | None = None  #: from camber sweeps in both directions [deg]
-    epsilon_gamma_model: float | None = (
-        None  #: by (17) from the forces of the fitted model; None before a fit
-    )
+    epsilon_gamma_model: float | None = None  #: by (17) from the forces of the model; None before a fit
     made: Made | None = None  #: of ``mffit spin`` only
     reasons: tuple[str, ...] = ()  #: reasons against trust, of ``mffit spin`` only
     published: PublishedResult | None = None  #: at the nominal load; None without eps_gamma or secant
@@ -350,15 +349,6 @@ class Measured(Brief):
         return self.nominal.F_phit if self.nominal else None
 
     @property
-    def F_phit_load(self) -> float:
-        assert self.nominal is not None
-        return self.nominal.load
-
-    @property
-    def C_phit(self) -> Quantity | None:
-        return self.nominal.C_phit if self.nominal else None
-
-    @property
     def C_gamma(self) -> Quantity | None:
         return self.nominal.C_gamma if self.nominal else None
 
@@ -374,10 +364,6 @@ class Measured(Brief):
     @property
     def r_e(self) -> Quantity | None:
         return self.nominal.r_e if self.nominal else None
-
-    @property
-    def R(self) -> Quantity | None:
-        return self.nominal.R if self.nominal else None
 
     @property
     def alpha_M(self) -> Quantity | None:

@@ -10,7 +10,7 @@ from scipy.special import chdtrc
 from uncertainties import UFloat
 
 from mffit.config import Config, path_curvature
-from mffit.constants import FALSE_ALARM
+from mffit.constants import FALSE_ALARM, NAMED_IN_SENTENCE
 from mffit.measured import wording
 from mffit.measured.axis import slope_at, split_of_zero
 from mffit.measured.camber_reduction import camber_reduction
@@ -124,12 +124,14 @@ def warnings_of_setups(
     for name in used:
         steady = np.flatnonzero((points.setup == points.setups.index(name)) & ~points.continuous)
         if not len(zeros(points, LoadGroup(math.nan, steady), 1)):
-            out.append(wording.setup_without_zeros(name))
+            out.append(wording.SETUP_WITHOUT_ZEROS.format(name=name))
     out += _undeclared(config)
     # The first set-up is covered by the sentence on the alignment of the whole test.
     for found in row.setups[1:] if row else ():
         if found.axis_off and found.alpha_M is not None:
-            out.append(wording.setup_misaligned(found.name, found.alpha_M))
+            out.append(
+                wording.SETUP_MISALIGNED.format(name=found.name, angle=wording.angle_text(found.alpha_M))
+            )
     if scatter is not None and scatter.chance < FALSE_ALARM:
         out.append(wording.setup_scatter(scatter))
     return out
@@ -144,4 +146,5 @@ def _undeclared(config: Config) -> list[str]:
         for path, sweep in zip(paths, config.sweep, strict=True)
         if sweep.setup is None and path in named
     ]
-    return [wording.sweeps_without_setup(bare)] if bare else []
+    files = ", ".join(bare[:NAMED_IN_SENTENCE]) + " and others" * (len(bare) > NAMED_IN_SENTENCE)
+    return [wording.SWEEPS_WITHOUT_SETUP.format(files=files)] if bare else []

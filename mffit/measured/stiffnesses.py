@@ -181,7 +181,7 @@ def load_slopes(evidence: DirectEvidence, group: LoadGroup) -> tuple[LoadSlopes,
         slope=slope,
         secant=secant,
     )
-    troubles = [trouble, wording.guessed_stiffness(group.load) if guessed else None]
+    troubles = [trouble, wording.GUESSED_STIFFNESS.format(load=group.load) if guessed else None]
     return found, [one for one in troubles if one]
 
 
@@ -258,9 +258,9 @@ def _chosen(config: Config, found: Estimates, load: float) -> tuple[SlopeAtZero 
     wanted, angle = config.camber_stiffness.method, config.camber_stiffness.angle_deg
     slope_possible = found.slope is not None and 2.0 * found.largest >= CAMBER_OF_SLOPES.rad
     if wanted == "slope" and not slope_possible and found.secant is not None:
-        return found.secant, wording.slope_not_possible(load, angle)
+        return found.secant, wording.SLOPE_NOT_POSSIBLE.format(load=load, angle=angle)
     if wanted == "secant" and found.secant is None and found.slope is not None:
-        return found.slope, wording.secant_not_possible(load, angle)
+        return found.slope, wording.SECANT_NOT_POSSIBLE.format(load=load, angle=angle)
     return (found.slope if wanted == "slope" else found.secant), None
 
 

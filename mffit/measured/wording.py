@@ -7,12 +7,67 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from mffit.measured.result import Alignment, LoadResult, Measured, SetupScatter, Source, usual_ply_steer
-from mffit.rounding import ascii_only, stated
 from tir import Quantity
 
 STRAIGHT_PATH = "A flat track's path is straight: it has no turn slip to measure."
 ONE_LOAD = "PECP2 is 0: one load was measured."
 EPSILON_IN_NOISE = "PECP2 is 0: eps_gamma itself is within 2 u of zero, so a relative slope has no meaning."
+LOAD_SLOPE = "PECP2 = {pecp2:.3f} +- {u:.3f} (k = 1)."
+SLOPE_IN_NOISE = "PECP2 is 0: the slope {slope:.3f} per nominal load is within 2 u = {twice:.3f}."
+SLOPE_TOO_STEEP = "PECP2 is 0: eps_gamma would reach {largest:.2f} within the loads."
+OFF_NOMINAL_PRESSURE = (
+    "Everything here holds at {used:.0f} kPa, that of most sweeps; the nominal pressure is {nominal:.0f} kPa."
+)
+CAMBER_SKEW = (
+    "Forward and backward camber sweeps: leaning steers the wheel by {skew} times the sine of the camber angle (camber skew). It "
+    "is subtracted from the camber stiffness."
+)
+CAMBER_SKEW_BEYOND = (
+    "the camber axis is not square to the steering axis: forward and backward camber sweeps show a camber skew of {skew}, and "
+    "{declared:g} {unit} are declared (u_camber_skew_deg); it is corrected here; square the axis, or declare what it can be"
+)
+CONICITY = (
+    "Zeros on both mounts: the conicity force is {conicity}. It is subtracted from the turn-slip force."
+)
+GUESSED_STIFFNESS = (
+    "no upright forward sideslip sweep at {load:.0f} N gives C_alpha, so what play and camber skew do to eps_gamma is corrected "
+    "by the usual stiffness of tyres; add the sweep, or check direction and mount of its file"
+)
+SLOPE_NOT_POSSIBLE = (
+    "at {load:.0f} N the camber sweep is too short for the slope at zero; the secant at {angle:g} deg is used, which is a few "
+    "per cent low: add cambers up to 20 deg"
+)
+SECANT_NOT_POSSIBLE = (
+    "at {load:.0f} N the camber sweep does not reach {angle:g} deg; the slope at zero is used in "
+    "place of the secant"
+)
+ZEROS_DISAGREE = (
+    "at {load:.0f} N the {way} zeros of {least} and {most} are {low:.0f} N and {high:.0f} N; these zeros cannot come from one "
+    "path: look for a sweep whose path_centre, path_radius or direction is not declared, or for an axis that was moved between "
+    "them"
+)
+SETUP_WITHOUT_ZEROS = (
+    "set-up {name} has no points at zero sideslip and camber: its zeros are known only as declared in [rig], and it adds nothing "
+    "to the turn-slip force; run zeros in every set-up"
+)
+SWEEPS_WITHOUT_SETUP = (
+    "{files}: no setup is given, although other sweeps on this path give one; they count as a set-up of their own. Give setup in "
+    "every [[sweep]]"
+)
+LAST_IS_ALIGNED = "the usual path was run in several set-ups; the correction is that of the last one, {name}"
+SETUP_MISALIGNED = (
+    "set-up {name}: the sideslip axis is misaligned, alpha_M = {angle} deg; the fit corrects the angles of "
+    "this set-up for it"
+)
+STEERING = (
+    "C_alpha holds for a rigid steering, as declared: one that yields by {compliance:g} deg per Nm of Mz would change it by "
+    "{percent:.1f} %. Measure the compliance and state it as u_steering_compliance_deg_per_Nm; without a model of the tyre "
+    "nothing else shows it."
+)
+UNKNOWN_WARMTH = (
+    "C_alpha and C_gamma are of the tyre as warm as its sweeps leave it at zero: no temperature (T_degC) was recorded, and a "
+    "tyre that loses 6 % along each sweep is 3 % stiffer when cold."
+)
 
 
 def lacking(*, camber: bool, zeros: bool, radius: bool) -> list[str]:
@@ -51,18 +106,6 @@ def nothing_measured(lacks: Sequence[str]) -> str:
     return f"eps_gamma could not be measured, for lack of {' and '.join(lacks)}"
 
 
-def load_slope(pecp2: float, u: float) -> str:
-    return f"PECP2 = {pecp2:.3f} +- {u:.3f} (k = 1)."
-
-
-def slope_in_noise(slope: float, u: float) -> str:
-    return f"PECP2 is 0: the slope {slope:.3f} per nominal load is within 2 u = {2 * u:.3f}."
-
-
-def slope_too_steep(largest: float) -> str:
-    return f"PECP2 is 0: eps_gamma would reach {largest:.2f} within the loads."
-
-
 def alignment(row: LoadResult, u: float) -> str:
     """A sentence on the sideslip axis from the zeros; empty if both sides of the disc cancel its effect.
 
@@ -72,7 +115,7 @@ def alignment(row: LoadResult, u: float) -> str:
     if row.alpha_M is None:
         return "" if min(row.paths) < 0.0 < max(row.paths) else _not_separable(row, row.F_phit.value, u)
     slip = row.slip_force(row.alpha_M.value)
-    whole, of_axis, of_tyre = (_angle(x) for x in (row.alpha_M, row.misalignment, row.ply_steer))
+    whole, of_axis, of_tyre = (angle_text(x) for x in (row.alpha_M, row.misalignment, row.ply_steer))
     said = (
         f"misalignment plus ply-steer alpha_M = {whole} deg ({slip:.0f} N); uncorrected it would move eps_gamma by "
         f"{row.shift_by(slip):.2f}. By usual sizes of both, misalignment is {of_axis} deg and ply-steer {of_tyre} deg"
@@ -103,63 +146,9 @@ def _not_separable(row: LoadResult, force: float, u: float) -> str:
     )
 
 
-def _angle(x: Quantity | None) -> str:
+def angle_text(x: Quantity | None) -> str:
+    """An angle with its standard uncertainty [deg]."""
     return "unknown" if x is None else f"{math.degrees(x.value):.3f} +- {math.degrees(x.u):.3f}"
-
-
-def off_nominal_pressure(used: float, nominal: float) -> str:
-    return (
-        f"Everything here holds at {used / 1e3:.0f} kPa, that of most sweeps; the nominal pressure is {nominal / 1e3:.0f} "
-        "kPa."
-    )
-
-
-def camber_skew(skew: Quantity) -> str:
-    return (
-        f"Forward and backward camber sweeps: leaning steers the wheel by {ascii_only(stated(skew, skew.unit))} times the sine "
-        "of the camber angle (camber skew). It is subtracted from the camber stiffness."
-    )
-
-
-def camber_skew_beyond(skew: Quantity, declared: float) -> str:
-    return (
-        f"the camber axis is not square to the steering axis: forward and backward camber sweeps show a camber skew of "
-        f"{ascii_only(stated(skew, skew.unit))}, and {declared:g} {skew.unit} are "
-        "declared (u_camber_skew_deg); it is corrected here; square the axis, or declare what it can be"
-    )
-
-
-def conicity_measured(found: Quantity) -> str:
-    return (
-        f"Zeros on both mounts: the conicity force is {ascii_only(stated(found, found.unit))}. It is subtracted from the "
-        "turn-slip force."
-    )
-
-
-def guessed_stiffness(load: float) -> str:
-    return (
-        f"no upright forward sideslip sweep at {load:.0f} N gives C_alpha, so what play and camber skew do to eps_gamma is "
-        "corrected by the usual stiffness of tyres; add the sweep, or check direction and mount of its file"
-    )
-
-
-def slope_not_possible(load: float, angle_deg: float) -> str:
-    return (
-        f"at {load:.0f} N the camber sweep is too short for the slope at zero; the secant at {angle_deg:g} deg is used, "
-        "which is a few per cent low: add cambers up to 20 deg"
-    )
-
-
-def secant_not_possible(load: float, angle_deg: float) -> str:
-    return f"at {load:.0f} N the camber sweep does not reach {angle_deg:g} deg; the slope at zero is used instead of the secant"
-
-
-def zeros_disagree(load: float, way: str, sweeps: tuple[str, str], forces: tuple[float, float]) -> str:
-    return (
-        f"at {load:.0f} N the {way} zeros of {sweeps[0]} and {sweeps[1]} are {forces[0]:.0f} N and {forces[1]:.0f} N; these "
-        "zeros cannot come from one path: look for a sweep whose path_centre, path_radius or direction is not declared, or "
-        "for an axis that was moved between them"
-    )
 
 
 def paths_contradict(load: float, radii: Sequence[float], C_phit: Sequence[Quantity]) -> str:
@@ -176,31 +165,6 @@ def paths_contradict(load: float, radii: Sequence[float], C_phit: Sequence[Quant
 def _centre(R: float) -> str:
     """Place of the disc's centre, to the left for a positive radius [m]."""
     return f"{abs(R):.3g} m to the {'left' if R > 0.0 else 'right'}"
-
-
-def setup_without_zeros(name: str) -> str:
-    return (
-        f"set-up {name} has no points at zero sideslip and camber: its zeros are known only as declared in [rig], and it adds "
-        "nothing to the turn-slip force; run zeros in every set-up"
-    )
-
-
-def sweeps_without_setup(files: Sequence[str]) -> str:
-    return (
-        f"{', '.join(files[:3])}{' and others' if len(files) > 3 else ''}: no setup is given, although other sweeps on this "
-        "path give one; they count as a set-up of their own. Give setup in every [[sweep]]"
-    )
-
-
-def last_is_aligned(name: str) -> str:
-    return f"the usual path was run in several set-ups; the correction is that of the last one, {name}"
-
-
-def setup_misaligned(name: str, alpha_M: Quantity) -> str:
-    return (
-        f"set-up {name}: the sideslip axis is misaligned, alpha_M = {_angle(alpha_M)} deg; the fit corrects the angles of "
-        "this set-up for it"
-    )
 
 
 def setup_scatter(found: SetupScatter) -> str:
@@ -251,22 +215,6 @@ def beside_the_file(measured: Measured) -> list[OtherEstimate]:
         else:
             found.append(OtherEstimate("debiased", debiased, f"{why} to what is measured"))
     return found
-
-
-def steering(compliance: float, change: float) -> str:
-    """A sentence on the change of C_alpha by a compliance of the steering."""
-    return (
-        f"C_alpha holds for a rigid steering, as declared: one that yields by {compliance:g} deg per Nm of Mz would change it by "
-        f"{100 * change:.1f} %. Measure the compliance and state it as u_steering_compliance_deg_per_Nm; without a model of the "
-        "tyre nothing else shows it."
-    )
-
-
-UNKNOWN_WARMTH = (
-    "C_alpha and C_gamma are of the tyre as warm as its sweeps leave it at zero: no temperature (T_degC) was recorded, and a "
-    "tyre that loses 6 % along each sweep is 3 % stiffer when cold."
-)
-"""Which tyre the stiffnesses are of, where temperatures are unknown."""
 
 
 def expanded(measured: Measured) -> str:

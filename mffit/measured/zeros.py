@@ -177,6 +177,7 @@ def unlike_zeros(points: Points, group: LoadGroup, C_alpha: UFloat | None, confi
         readings = [named(force, u, "zero of a sweep", "N") for force in found.values()]
         if readings and combined(readings).chance < FALSE_ALARM:
             least, most = (f(found, key=lambda k: found[k]) for f in (min, max))
-            names = (points.sweep_names[least], points.sweep_names[most])
-            out.append(wording.zeros_disagree(group.load, word, names, (found[least], found[most])))
+            forces = {"low": found[least], "high": found[most]}
+            names = {"least": points.sweep_names[least], "most": points.sweep_names[most]}
+            out.append(wording.ZEROS_DISAGREE.format(load=group.load, way=word, **names, **forces))
     return out

@@ -58,9 +58,7 @@ class Rule:
     outcome: Outcome = Outcome.REFUSED
     sentence: str  #: template, filled with the facts of a case
     find: Find
-    of_all: bool = (
-        False  #: before the fit, whether points count that are otherwise not judged, such as driven ones
-    )
+    of_all: bool = False  #: whether a rule before the fit also judges points that are driven or braked
 
     def said(self, facts: Facts) -> str:
         """The sentence about one case."""

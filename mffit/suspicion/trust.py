@@ -65,9 +65,7 @@ class HeldNumber:
     sigma: float  #: standard deviations by which the readings contradict the bound or value
     share: float  #: share of the residual sum of squares that it causes
     by_hand: bool = False  #: whether [coefficients] holds or bounds it
-    physical: bool = (
-        False  #: whether the limit is one of the curves, such as E <= 1, and not that of published tyres
-    )
+    physical: bool = False  #: whether it is a limit of the curves, such as E <= 1, not of published tyres
 
 
 keys(HeldNumber, "name sigma share")
@@ -103,9 +101,8 @@ class FinishedFit(ReadOnlyArrays, JudgedMeasurement):
     held: tuple[HeldNumber, ...] = ()
     rig: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Fitted rig errors and environment terms: (value, standard uncertainty)."""
-    at_limits: tuple[
-        str, ...
-    ] = ()  #: free coefficients at bounds, at physical limits or outside the range of usual tyres
+    at_limits: tuple[str, ...] = ()
+    """Free coefficients at bounds, at physical limits or outside the range of usual tyres."""
     free: int = 0  #: number of free coefficients
     left: float = 0.0  #: predicted decrease of the sum of squares by one more step: 0 at the minimum
     broken: tuple[str, ...] = ()  #: errors that the check finds in the written files, as sentences

@@ -138,7 +138,7 @@ def _sideways(
     """The free numbers of the rig errors that act on Fy and Mz."""
     several = len(setups) > 1
     spin = config.rig.on_disc and any(row.F_phit is not None for row in measured.per_load)
-    load = measured.F_phit_load if spin else config.tyre.nominal_load
+    load = measured.nominal.load if spin and measured.nominal else config.tyre.nominal_load
     declared = {
         name: prior
         for name, prior in _declared(config, measured, load).items()

@@ -243,7 +243,7 @@ def _compared(result: Any, true: tir.Tyre, known: Mapping[str, Any], rng: np.ran
     if measured.epsilon_gamma is not None:
         for name, quantity, truth in (
             ("eps_gamma", measured.epsilon_gamma, known["epsilon_gamma"]),
-            ("C_phit", measured.C_phit, _at_pressure_of_sweeps(points, true, known).C_phit_secant_Nm),
+            ("C_phit", measured.nominal.C_phit, _at_pressure_of_sweeps(points, true, known).C_phit_secant_Nm),
         ):
             draw.note(name, quantity.value, quantity.u, truth)
         draw.error["eps_gamma"] = measured.epsilon_gamma.value - known["epsilon_gamma"]

@@ -78,7 +78,7 @@ def test_ply_steer_is_small_on_a_disc_and_free_on_a_straight_path():
 def test_pecp1_of_the_model_gives_the_measured_turn_slip_force(sound_rig):
     measured = sound_rig.measured
     forces = [
-        sound_rig.fit.tyre(measured.F_phit_load, phi_t=-1 / 1.323, Vx=speed, p=250e3).Fy
+        sound_rig.fit.tyre(measured.nominal.load, phi_t=-1 / 1.323, Vx=speed, p=250e3).Fy
         for speed in (6.0, -6.0)
     ]
     # The zeros count with their noise, beside all other points: the model need not pass through them.

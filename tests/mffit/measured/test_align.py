@@ -46,7 +46,7 @@ def test_the_first_step_guesses_ten_and_corrects_against_the_misalignment():
     found = align(zeros(0.5))
     assert found.steps[0].C_alpha == -10.0 * 1500.0
     assert found.correction_deg == pytest.approx(-0.55)
-    assert align(zeros(0.5), C_alpha=11.0).correction_deg == pytest.approx(-0.5)
+    assert align(zeros(0.5), measured=MEASURED).correction_deg == pytest.approx(-0.5)
 
 
 def test_the_second_step_knows_the_stiffness_from_the_first():

@@ -504,8 +504,8 @@ def test_the_json_holds_value_and_uncertainty_of_every_quantity():
     result = measured(Plain())
     content = as_json.document(result)
     for key, found in (
-        ("epsilon_gamma", result.epsilon_gamma), ("C_phit_Nm", result.C_phit), ("C_gamma_N_per_rad", result.C_gamma),
-        ("C_alpha_N_per_rad", result.C_alpha), ("r_e_m", result.r_e), ("R_m", result.R), ("F_phit_N", result.F_phit),
+        ("epsilon_gamma", result.epsilon_gamma), ("C_phit_Nm", result.nominal.C_phit), ("C_gamma_N_per_rad", result.C_gamma),
+        ("C_alpha_N_per_rad", result.C_alpha), ("r_e_m", result.r_e), ("R_m", result.nominal.R), ("F_phit_N", result.F_phit),
     ):  # fmt: skip
         assert (content[key], content[f"u_{key}"]) == (found.value, found.u)
     row = content["per_load"][0]

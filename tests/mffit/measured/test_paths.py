@@ -88,7 +88,7 @@ def test_the_usual_path_is_reported_as_before():
     """Forces and radius of the record stay those of the declared path."""
     alone, both = found(campaign()), found(campaign(Plain(side=1)))
     assert both.nominal.F_forward == alone.nominal.F_forward
-    assert both.R == alone.R
+    assert both.nominal.R == alone.nominal.R
     assert both.C_gamma.value == pytest.approx(alone.C_gamma.value)
     assert both.F_phit.value == pytest.approx(alone.F_phit.value - OFFSET, abs=NEWTON)
 

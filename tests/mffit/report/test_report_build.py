@@ -127,7 +127,7 @@ def test_every_coefficient_is_listed_with_its_status(page):
 def test_headline_numbers_are_those_of_the_direct_method(result, page):
     measured = result.measured
     assert f"{measured.epsilon_gamma.value:.2f}"[1:] in page.text
-    assert f"{measured.C_phit.value:.0f} ± {measured.C_phit.u:.0f}" in page.text
+    assert f"{measured.nominal.C_phit.value:.0f} ± {measured.nominal.C_phit.u:.0f}" in page.text
 
 
 def test_the_numbers_of_a_flat_track_are_those_of_the_model(tmp_path):
