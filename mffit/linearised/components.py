@@ -12,6 +12,7 @@ from mffit.linearised import constants
 from mffit.linearised.mixed import Mixed, Variances
 from mffit.linearised.search import ParameterSearch, SearchedParameter, flat, normal
 from mffit.linearised.smooth import SmoothFunctions
+from tir.frozen import ReadOnlyArrays
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,44 +79,59 @@ def variances(x: np.ndarray, smooth: SmoothFunctions) -> tuple[Variances, np.nda
     return Variances(2.0 * x[0] + share, own, 2.0 * float(x[-1])), by_common, by_own
 
 
-def with_further(given: Variances, further: np.ndarray) -> Variances:
-    """The variances extended by the log variances of ``further`` common numbers."""
-    return given._replace(common=np.append(given.common, further))
+@dataclass(frozen=True, eq=False)
+class Terms(ReadOnlyArrays):
+    """The terms of the residuals of a channel, as functions of the variance components.
 
-
-def most_probable(
-    model: Mixed, smooth: SmoothFunctions, near: Components | None, misfit: float, further: np.ndarray
-) -> Components:
-    """The components of the largest evidence, around their first guess; ``misfit`` is the size of the residuals.
-
-    The search starts at ``near``, the components of a similar fit, if given; else at a model error that changes over all inputs.
-    Random effects of the runs can absorb model error over a condition that runs hold. If they are larger than the model error, a
-    second search starts with model error over a single input; its result must be clearly more probable. ``further`` are log
-    variances of the common numbers that follow the functions of ``smooth``.
+    The common numbers of ``model`` are the weights of ``smooth``, then further numbers with variances of their own.
     """
-    parameters = _parameters(smooth, misfit)
 
-    def evidence(x: np.ndarray) -> tuple[float, np.ndarray]:
-        given, by_common, by_own = variances(x, smooth)
-        found = model.evidence(with_further(given, further))
-        slope = found.common[: len(by_common)] @ by_common + found.own @ by_own
-        slope[-1] += 2.0 * found.noise
-        return found.value, slope
+    model: Mixed
+    smooth: SmoothFunctions
+    further: np.ndarray  #: log variances of the further numbers
 
-    search = ParameterSearch(parameters, evidence, sum(len(group) for group in model.groups))
+    def variances(self, of: Components) -> Variances:
+        """The prior variances."""
+        return self._with_slopes(of.logarithms)[0]
 
-    def best(begin: Components) -> np.ndarray:
-        return search.most_probable(dict(zip(parameters, begin.logarithms.tolist(), strict=True)))
+    def evidence(self, of: Components) -> float:
+        """Log evidence of components."""
+        return self.model.evidence(self.variances(of)).value
 
-    first = Components.of_logarithms(one.start for one in parameters.values())
-    found = best(near or first)
-    seen = Components.of_logarithms(found)
-    if near is None and seen.offset > seen.missed and smooth.inputs:
-        begin = max(first.over_one_input(smooth), key=lambda one: search.density(one.logarithms)[0])
-        other = best(begin)
-        if search.density(other)[0] > search.density(found)[0] + constants.CERTAIN_EVIDENCE:
-            return Components.of_logarithms(other)
-    return seen
+    def _with_slopes(self, x: np.ndarray) -> tuple[Variances, np.ndarray, np.ndarray]:
+        given, by_common, by_own = variances(x, self.smooth)
+        return given._replace(common=np.append(given.common, self.further)), by_common, by_own
+
+    def most_probable(self, misfit: float, near: Components | None = None) -> Components:
+        """The components of the largest evidence, around their first guess; ``misfit`` is the size of the residuals.
+
+        The search starts at ``near``, the components of a similar fit, if given; else at a model error that changes over all
+        inputs. Random effects of the runs can absorb model error over a condition that runs hold. If they are larger than the
+        model error, a second search starts with model error over a single input; its result must be clearly more probable.
+        """
+        parameters = _parameters(self.smooth, misfit)
+
+        def evidence(x: np.ndarray) -> tuple[float, np.ndarray]:
+            given, by_common, by_own = self._with_slopes(x)
+            found = self.model.evidence(given)
+            slope = found.common[: len(by_common)] @ by_common + found.own @ by_own
+            slope[-1] += 2.0 * found.noise
+            return found.value, slope
+
+        search = ParameterSearch(parameters, evidence, sum(len(group) for group in self.model.groups))
+
+        def best(begin: Components) -> np.ndarray:
+            return search.most_probable(dict(zip(parameters, begin.logarithms.tolist(), strict=True)))
+
+        first = Components.of_logarithms(one.start for one in parameters.values())
+        found = best(near or first)
+        seen = Components.of_logarithms(found)
+        if near is None and seen.offset > seen.missed and self.smooth.inputs:
+            others = first.over_one_input(self.smooth)
+            other = best(max(others, key=lambda one: search.density(one.logarithms)[0]))
+            if search.density(other)[0] > search.density(found)[0] + constants.CERTAIN_EVIDENCE:
+                return Components.of_logarithms(other)
+        return seen
 
 
 def _parameters(smooth: SmoothFunctions, misfit: float) -> dict[str, SearchedParameter]:

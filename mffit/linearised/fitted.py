@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -11,7 +11,7 @@ import numpy as np
 
 from mffit.least_squares import inverse, root
 from mffit.linearised import constants
-from mffit.linearised.components import Components, most_probable, own_columns, variances, with_further
+from mffit.linearised.components import Components, Terms, own_columns
 from mffit.linearised.inputs import along, inputs_of, settings_of
 from mffit.linearised.mixed import LeftOutReadings, Mixed, MixedPosterior, Variances
 from mffit.linearised.smooth import SmoothFunctions
@@ -32,19 +32,22 @@ class LinearisedChannel(ReadOnlyArrays):
     rows: np.ndarray  #: (n,) indices of the points in the model
     stride: int  #: thinning factor: readings represented by each of these points
     unit: np.ndarray  #: (n,) standard uncertainty as stated, or the usual one [N], [Nm], [m]
-    smooth: SmoothFunctions
     components: Components
     model: Mixed
     """Model of the residuals (measured less model, over ``unit``). Common numbers: the weights of ``smooth``, then independent
     changes of the fit's numbers."""
     variances: Variances  #: prior variances of ``model``
-    alone: Mixed
-    """The model with fixed coefficients. Common numbers: the weights of ``smooth``, then rig errors with declared priors."""
-    declared: np.ndarray  #: log variances of these rig errors
+    alone: Terms
+    """The terms with fixed coefficients; the further numbers are rig errors with declared priors."""
     missed: np.ndarray
     """(m,) estimated weights of ``smooth`` with fixed coefficients and rig zeros [unit of the channel]."""
     turn: np.ndarray  #: (k, k) changes of the fit's numbers by the independent changes in ``model``
     sweeps: np.ndarray  #: index of the sweep of every group of ``model``
+
+    @property
+    def smooth(self) -> SmoothFunctions:
+        """The functions of the model error."""
+        return self.alone.smooth
 
     @cached_property
     def posterior(self) -> MixedPosterior:
@@ -115,8 +118,9 @@ class LinearisedChannel(ReadOnlyArrays):
             min(length, one.spacing) if one.is_held else length
             for one, length in zip(self.smooth.inputs, self.components.lengths, strict=True)
         )
-        given, _, _ = variances(replace(self.components, lengths=lengths).logarithms, self.smooth)
-        (found,) = self._left_out(self.model, with_further(given, np.zeros(self.turn.shape[1])), [rows])
+        terms = replace(self.alone, further=np.zeros(self.turn.shape[1]))
+        given = terms.variances(replace(self.components, lengths=lengths))
+        (found,) = self._left_out(self.model, given, [rows])
         return found
 
     @property
@@ -146,25 +150,22 @@ class LinearisedChannel(ReadOnlyArrays):
         for i, one in enumerate(self.smooth.inputs):
             lengths = list(self.components.lengths)
             lengths[i] = constants.LONGEST_LENGTH * one.width
-            constant = replace(self.components, lengths=tuple(lengths))
-            without = _evidence(self.alone, constant, self.smooth, self.declared)
+            without = self.alone.evidence(replace(self.components, lengths=tuple(lengths)))
             found[one.name] = self.stride * (self._evidence - without)
         return dict(sorted(found.items(), key=lambda item: -item[1]))
 
     @cached_property
     def _evidence(self) -> float:
         """Log evidence of the model with fixed coefficients."""
-        return _evidence(self.alone, self.components, self.smooth, self.declared)
+        return self.alone.evidence(self.components)
 
     @cached_property
     def _without(self) -> float:
         """Log evidence if the model error is only a constant."""
-        constant = SmoothFunctions.over(())
-        model = replace(
-            self.alone, common=np.hstack([1.0 / self.unit[:, None], self.alone.common[:, len(self.missed) :]])
-        )
-        found = _found(model, constant, self.unit, self.declared)
-        return _evidence(model, found, constant, self.declared)
+        rig = self.alone.model.common[:, len(self.missed) :]
+        model = replace(self.alone.model, common=np.hstack([1.0 / self.unit[:, None], rig]))
+        terms = replace(self.alone, model=model, smooth=SmoothFunctions.over(()))
+        return terms.evidence(terms.most_probable(_misfit(model, self.unit)))
 
     def _left_out(self, model: Mixed, given: Variances, rows: Sequence[np.ndarray]) -> list[LeftOutReadings]:
         return [
@@ -178,9 +179,10 @@ class LinearisedChannel(ReadOnlyArrays):
 
     def gain(self, change: np.ndarray) -> tuple[float, float]:
         """Gain of log evidence by adding a known ``change`` (n,) to the model, and :attr:`proof` of the remaining model error."""
-        without = replace(self.alone, residual=self.alone.residual - change / self.unit)
-        found = _found(without, self.smooth, self.unit, self.declared, self.components)
-        beside = replace(self, alone=without, components=found)
+        model = replace(self.alone.model, residual=self.alone.model.residual - change / self.unit)
+        terms = replace(self.alone, model=model)
+        found = terms.most_probable(_misfit(model, self.unit), self.components)
+        beside = replace(self, alone=terms, components=found)
         return self.stride * (beside._evidence - self._evidence), beside.proof
 
 
@@ -213,7 +215,7 @@ class LinearisedFit:
         information, pull = np.diag([number.spread**-2.0 for number in zeros]), np.zeros(len(zeros))
         for channel in self.channels.values():
             m = len(channel.missed)
-            model = _beside(channel.alone, rig, m, free)
+            model = _beside(channel.alone.model, rig, m, free)
             given = channel.variances._replace(common=channel.variances.common[:m])
             found = replace(model, common=model.common[:, :m]).further(given, model.common[:, m:])
             information, pull = information + found.information, pull + found.pull
@@ -228,15 +230,13 @@ def linearised(
     simulation: Simulation,
     sigma: Mapping[str, np.ndarray],
     numbers: Sequence[Uncertain],
-    only: Iterable[str] | None = None,
     without: np.ndarray | None = None,
     near: LinearisedFit | None = None,
 ) -> LinearisedFit:
     """The linear model of a simulation's residuals at the points.
 
-    ``sigma`` (n,) is the uncertainty that the fit used, by channel, inf where a reading has no weight. ``only`` are the
-    channels of the result, all fitted ones if None. Points ``without`` do not enter the estimation of the components; those of
-    ``near``, a linear model of a similar fit, are the starting values.
+    ``sigma`` (n,) is the uncertainty that the fit used, by channel, inf where a reading has no weight. Points ``without`` do not
+    enter the estimation of the components; those of ``near``, a linear model of a similar fit, are the starting values.
     """
     readings = simulation.readings(points, sigma)
     sight = _Sight(
@@ -249,7 +249,7 @@ def linearised(
         {},
     )
     found = {}
-    for name in sigma if only is None else only:
+    for name in sigma:
         used = np.isfinite(sigma[name]) & np.isfinite(points.channel(name))
         if np.any(used):
             found[name] = _channel(name, sight, readings[name], sigma[name], used)
@@ -324,36 +324,33 @@ def _channel(
         own=own / unit[:, None],
         groups=[own for own in (g[known[g]] for g in groups) if len(own)],
     )
-    components = _found(alone, smooth, unit, declared, sight.near.get(name))
+    terms = Terms(alone, smooth, declared)
+    components = terms.most_probable(_misfit(alone, unit), sight.near.get(name))
     turn = _turn(sight.numbers, (slopes / sigma[rows][:, None])[known], stride)
-    of_functions, _, _ = variances(components.logarithms, smooth)
     return LinearisedChannel(
         name=name,
         rows=rows,
         stride=stride,
         unit=unit,
-        smooth=smooth,
         components=components,
         model=Mixed(residual / unit, np.hstack([missed, slopes @ turn / unit[:, None]]), alone.own, groups),
-        variances=with_further(of_functions, np.zeros(turn.shape[1])),
-        alone=alone,
-        declared=declared,
-        missed=_missed(alone, [sight.numbers[i] for i in of_rig], declared, of_functions),
+        variances=replace(terms, further=np.zeros(turn.shape[1])).variances(components),
+        alone=terms,
+        missed=_missed(terms, [sight.numbers[i] for i in of_rig], components),
         turn=turn,
         sweeps=np.unique(part.sweep),
     )
 
 
-def _missed(alone: Mixed, rig: Sequence[Uncertain], declared: np.ndarray, given: Variances) -> np.ndarray:
+def _missed(terms: Terms, rig: Sequence[Uncertain], components: Components) -> np.ndarray:
     """Posterior mean (m,) of the functions' weights, with free rig errors except zeros and held ones, which keep their values.
 
     A zero cannot be separated from a constant model error, so the result must go together with the stated zeros.
     """
-    functions = len(given.common)
+    functions = len(terms.smooth.orders)
     stays = np.array([number.held or error_of(number.name) in ZEROS for number in rig], dtype=bool)
-    model = _beside(alone, rig, functions, ~stays)
-    found = model.posterior(with_further(given, declared[~stays]))
-    return np.asarray(found.mean[:functions])
+    free = Terms(_beside(terms.model, rig, functions, ~stays), terms.smooth, terms.further[~stays])
+    return np.asarray(free.model.posterior(free.variances(components)).mean[:functions])
 
 
 def _is_of_force(number: Uncertain) -> bool:
@@ -389,20 +386,7 @@ def _turn(numbers: Sequence[Uncertain], weighted: np.ndarray, stride: int) -> np
     return root(inverse(np.diag(prior) + stride * (weighted.T @ weighted) / constants.WIDER_THAN_THE_FIT))
 
 
-def _evidence(model: Mixed, of: Components, smooth: SmoothFunctions, further: np.ndarray) -> float:
-    """Log evidence of variance components; ``further`` are log variances of further common numbers."""
-    given, _, _ = variances(of.logarithms, smooth)
-    return model.evidence(with_further(given, further)).value
-
-
-def _found(
-    model: Mixed,
-    smooth: SmoothFunctions,
-    unit: np.ndarray,
-    further: np.ndarray,
-    near: Components | None = None,
-) -> Components:
-    """The most probable variance components of residuals over ``unit`` (n,); ``further`` as in :func:`_evidence`."""
+def _misfit(model: Mixed, unit: np.ndarray) -> float:
+    """Root mean square of the residuals in the groups of a model, which are over ``unit`` (n,); never 0."""
     rows = np.concatenate(list(model.groups))
-    misfit = max(rms((model.residual * unit)[rows]), 1e-12)
-    return most_probable(model, smooth, near, misfit, further)
+    return max(rms((model.residual * unit)[rows]), 1e-12)
