@@ -68,12 +68,6 @@ SWEPT_SHARE = Real(
     "-",
     "Share of its setting's range that a movement among plateaus covers to be a sweep; a move to the next plateau covers less.",
 )
-MOST_OF_WAY = Real(
-    0.8,
-    "-",
-    "Share of the way of the settings by which a rig that rests half of the time is told from one that moves all the time: it "
-    "is made in half of that share of the time.",
-)
 SWEPT_LEVELS = Count(
     4, "-", "Levels of an angle that recordings cross to be a test of it, without which a file is worthless."
 )
@@ -94,9 +88,8 @@ UNLIKE_SHARE = Real(
     "Difference of the side forces of two files at like conditions, over their size, that is pointed out: 20 K change them by "
     "6 %, a worn tread by less.",
 )
-FEWEST_COMPARED = Count(6, "-", "Fewest angles at which two files are compared; two zeros are taken off.")
-FEWEST_COMPARED_LABELS = Count(
-    4, "-", "Fewest readings by which a sweep is compared with others at another label."
+FEWEST_COMPARED = Count(
+    4, "-", "Fewest readings by which sweeps or files are compared, beyond the zeros that are taken off."
 )
 
 # Definition of slip

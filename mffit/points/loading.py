@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
@@ -26,15 +27,16 @@ from mffit.points.other_label import other_labels
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
 from mffit.points.silent import without_silent_moments
-from mffit.points.slip_zero import SlipZero, against_free_rolling, readings_of
+from mffit.points.slip_zero import SlipRemarks, SlipZero, against_free_rolling, readings_of
 from mffit.points.steady import scale_of
 from mffit.points.steps import steps
 from mffit.points.stretch import StretchNote
 from mffit.points.unlike import unlike_files
-from mffit.sweeps.sweep import Sweep
+from mffit.sweeps.sweep import Sweep, Sweeps
 from tir.conventions import FLIPPED
 
 SIDES = ("left", "right")
+KEEPS_MOVING = "keeps moving and gives no steady point; only mffit diagnose uses it"
 
 
 class Reading(NamedTuple):
@@ -63,92 +65,92 @@ def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str
 def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False) -> Reading:
     """The sweeps of a checked ``tyre.toml`` as points in ISO-W axes; :func:`mffit.suspicion.before_the_fit` judges them.
 
-    On a straight path the means along continuous sweeps are points like any others, with their times, because the fit models
-    the lag of the force. On a disc, which needs pairs of steady points, they are left out, unless ``continuous``: they are then
-    kept, marked so, with the angle as read, and an undeclared zero of the longitudinal slip stays in the readings.
+    On a straight path the means along continuous sweeps are points like any others, because the fit models their lag. A disc
+    needs pairs of steady points and leaves them out, unless ``continuous``: they are then kept, marked so, and an undeclared
+    zero of the longitudinal slip stays in the readings.
 
     Raises InputError if a file cannot be read, or no point is found and the result must not be empty (``may_be_empty``).
     """
-    with as_declared(config):
-        found = files.load(config)
     phi_t = {entry.file: path_curvature(config.rig, entry) for entry in config.sweep}
-    timed = [evenly_timed(sweep) for sweep in found.sweeps]
-    held = [bridged(sweep, ("p", "V", "T")) for sweep, _ in timed]  # often logged at a lower rate
-    clocked = with_common_clock(held)
-    sweeps, of_slip = against_free_rolling(clocked, config, with_errors=continuous)
-    series = [settings_of(sweep) for sweep in sweeps if sweep.is_series]
-    scale = scale_of(series) if series else None
-    reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in sweeps]
+    found, of_slip = _loaded(config, continuous)
+    scale = scale_of([settings_of(sweep) for sweep in found.sweeps if sweep.is_series])
+    reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in found.sweeps]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
-    stretches = tuple(note for part in reduced for note in part.stretches)
-    lost = lost_sweeps((part.ranges for part in reduced), points, stretches)
-    reasons = tuple(one.sentence for one in lost if one.whole)
-    doubts = (
-        *(one.sentence for one in lost if not one.whole),
-        *(() if lost else little_used(stretches)),
-        *_compared(points.select(~points.continuous) if config.rig.on_disc else points),
-    )
-    warnings = [
-        *reasons,
-        *doubts,
-        *found.warnings,
-        *(sentence for _, sentences in timed for sentence in sentences),
-        *of_slip.warnings,
-        *(sentence for part in reduced for sentence in part.warnings),
-    ]
-    straight = config.rig.type == "flat-track"
-    if straight and not continuous:
+    if not (config.rig.on_disc or continuous):
         points = points.replace(continuous=False)
-    steady = points if continuous and straight else points.select(~points.continuous)
-    left_out = (
-        *by_hand(found.excluded),
-        *at_standstill(found.standing),
-        *(one for part in reduced for one in part.left_out),
-    )
-    if not len(steady):
-        if may_be_empty:
-            return Reading(steady, (*warnings, _nothing(reduced)), stretches, left_out, notes=of_slip.notes)
+    steady = points.select(~points.continuous) if config.rig.on_disc else points
+    if not len(steady) and not may_be_empty:
         raise InputError(_nothing(reduced), file=config.path)
-    if not continuous:
-        warnings += [
-            f"{points.files[index]}: keeps moving and gives no steady point; only mffit diagnose uses it"
-            for index in np.unique(points.file[points.continuous])
-        ]
-    warnings += _thin(steady, config)
-    kept, silent = without_silent_moments(points if continuous else steady)
-    warnings += silent
-    if not continuous:
-        left_out += _moving_left_out(points)
-    stepped = steps(sweeps, phi_t, config.tyre.unloaded_radius, scale)
-    excluded = _excluded(found.of_excluded, phi_t)
+    moving = () if continuous else _moving_left_out(points)
+    reasons, doubts = _doubted(reduced, steady, points)
+    kept, silent = without_silent_moments(points if continuous else steady) if len(steady) else (steady, ())
     return Reading(
         kept,
-        tuple(warnings),
-        stretches,
-        left_out,
-        excluded,
-        stepped,
-        of_slip.notes,
-        tuple(dict.fromkeys(said for _, said in of_slip.taken_off.values())),
-        _slip_as_read(kept, {file: zero for file, (zero, _) in of_slip.taken_off.items()}),
-        doubts,
-        reasons,
+        warnings=(
+            *reasons,
+            *doubts,
+            *found.warnings,
+            *(sentence for part in reduced for sentence in part.warnings),
+            *(f"{one.file}: {KEEPS_MOVING}" for one in moving),
+            *(_thin(steady, config) if len(steady) else [_nothing(reduced)]),
+            *silent,
+        ),
+        stretches=tuple(note for part in reduced for note in part.stretches),
+        left_out=(
+            *by_hand(found.excluded),
+            *at_standstill(found.standing),
+            *(one for part in reduced for one in part.left_out),
+            *moving,
+        ),
+        excluded=_excluded(found.of_excluded, phi_t),
+        steps=steps(found.sweeps, phi_t, config.tyre.unloaded_radius, scale),
+        notes=of_slip.notes,
+        taken_off=tuple(dict.fromkeys(said for _, said in of_slip.taken_off.values())),
+        as_read=_slip_as_read(kept, of_slip.taken_off),
+        doubts=doubts,
+        reasons=reasons,
     )
 
 
-def _compared(points: Points) -> tuple[str, ...]:
-    """Doubts about files and labels that others contradict at like conditions."""
-    found = (unlike_files(points), other_labels(points))
-    return tuple(one.sentence for kind in found for one in kind[:NAMED_IN_SENTENCE])
+def _loaded(config: Config, continuous: bool) -> tuple[Sweeps, SlipRemarks]:
+    """The sweeps as read, with even times on a common clock, without short gaps, and with slip against free rolling."""
+    with as_declared(config):
+        found = files.load(config)
+    timed = [evenly_timed(sweep) for sweep in found.sweeps]
+    held = [bridged(sweep, ("p", "V", "T")) for sweep, _ in timed]  # often logged at a lower rate
+    sweeps, of_slip = against_free_rolling(with_common_clock(held), config, with_errors=continuous)
+    said = (sentence for _, sentences in timed for sentence in sentences)
+    return replace(found, sweeps=sweeps, warnings=(*found.warnings, *said, *of_slip.warnings)), of_slip
 
 
-def _slip_as_read(points: Points, taken_off: Mapping[str, SlipZero]) -> Points | None:
+def _doubted(
+    reduced: Sequence[Reduced], compared: Points, points: Points
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Why a result of the points is not to be trusted, and why it is in doubt.
+
+    Settings of the recordings may be lost in the ``points``; files and labels may be contradicted by others at like conditions
+    among those ``compared``.
+    """
+    stretches = [note for part in reduced for note in part.stretches]
+    lost = lost_sweeps((part.ranges for part in reduced), points, stretches)
+    unlike = (unlike_files(compared), other_labels(compared))
+    return (
+        tuple(one.sentence for one in lost if one.whole),
+        (
+            *(one.sentence for one in lost if not one.whole),
+            *(() if lost else little_used(stretches)),
+            *(one.sentence for kind in unlike for one in kind[:NAMED_IN_SENTENCE]),
+        ),
+    )
+
+
+def _slip_as_read(points: Points, taken_off: Mapping[str, tuple[SlipZero, str]]) -> Points | None:
     """The points with the slip as the rig read it; None if no zero was subtracted."""
     if not taken_off:
         return None
     kappa = points.kappa.copy()
     of = readings_of(points)
-    for file, zero in taken_off.items():
+    for file, (zero, _) in taken_off.items():
         own = points.file == points.files.index(file) if file in points.files else np.zeros(len(points), bool)
         kappa[own] = ((1.0 + kappa) * (1.0 + zero.at(of)) - 1.0)[own]
     return points.replace(kappa=kappa)

@@ -237,7 +237,7 @@ def _differences(
 def _compared(setting: str, first: MeanReadings, second: MeanReadings) -> _Compared | None:
     """Two sweeps; None with too few common readings, without noise, or of a dead channel."""
     common = first.keys() & second.keys()
-    if len(common) < constants.FEWEST_COMPARED_LABELS:
+    if len(common) < constants.FEWEST_COMPARED:
         return None
     apart, u, force = np.transpose(list(_differences(setting, first, second)))
     if not np.all(u > 0.0) or not np.any(force):

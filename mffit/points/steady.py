@@ -167,15 +167,15 @@ def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) ->
 
 
 def _hurries(settings: SteadySettings) -> bool:
-    """Whether most of the way of all settings is made in a small part of the time.
+    """Whether the way of all settings is made in a small part of the time.
 
     A rig that settles at each set-point seems to move for long, but hardly does; in a sweep, the way takes the time.
     """
     lag = samples_in(settings.time, constants.COMPARED_APART)
-    ways = [np.abs(np.diff(_smoothed(settings, name)[0][::lag])) / step for name, step in STEP.items()]
-    made = np.cumsum(np.sort(np.sum(ways, axis=0))[::-1])
-    share = np.searchsorted(made, constants.MOST_OF_WAY * made[-1]) / len(made) if len(made) else 1.0
-    return bool(share <= constants.SWEPT_SHARE * constants.MOST_OF_WAY)
+    made = np.sum(
+        [np.abs(np.diff(_smoothed(settings, name)[0][::lag])) / step for name, step in STEP.items()], axis=0
+    )
+    return bool(np.sum(made) ** 2 <= constants.SWEPT_SHARE * len(made) * np.sum(made**2))
 
 
 def _with_their_ends(settings: SteadySettings, rests: Sequence[tuple[int, int]]) -> list[Stretch]:
@@ -302,11 +302,9 @@ def _without_jumps(settings: SteadySettings, name: str, begin: int, end: int) ->
 
 
 def scale_of(series: Sequence[SteadySettings]) -> Scale:
-    """Median absolute value of each setting; 0 if it is unknown."""
-    every = {
-        name: np.abs(np.concatenate([getattr(one, name) for one in series])) for name in (*STEP, *CONDITIONS)
-    }
-    return {name: float(np.nan_to_num(finite_median(size))) for name, size in every.items()}
+    """Median absolute value of each setting; 0 if it is unknown. Empty without a series."""
+    every = {name: [getattr(one, name) for one in series] for name in (*STEP, *CONDITIONS) if series}
+    return {name: float(np.nan_to_num(finite_median(np.abs(np.concatenate(x))))) for name, x in every.items()}
 
 
 def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.ndarray]:
