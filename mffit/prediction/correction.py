@@ -123,10 +123,9 @@ def _grid(missed: _Missed, inputs: Mapping[str, tuple[float, float]]) -> _Grid:
     random = np.random.default_rng(0)
     n = max(len(missed.known.channels[name].missed) for name in missed.names)
     at = pd.DataFrame({name: random.uniform(*ends, n) for name, ends in inputs.items()})
-    exact, share = missed(at), constants.INTERPOLATION_ADDS / np.sqrt(len(inputs))
-    size = {name: rms(values) for name, values in exact.items()}
+    drawn, share = _Drawn(missed, at, missed(at)), constants.INTERPOLATION_ADDS / np.sqrt(len(inputs))
     while True:
-        nodes = {name: _nodes(missed, at, exact, size, name, ends, share) for name, ends in inputs.items()}
+        nodes = {name: _nodes(drawn, name, ends, share) for name, ends in inputs.items()}
         if np.prod([len(own) for own in nodes.values()]) <= constants.MOST_NODES:
             break
         share *= np.sqrt(2.0)
@@ -134,30 +133,30 @@ def _grid(missed: _Missed, inputs: Mapping[str, tuple[float, float]]) -> _Grid:
     found = missed(whole)
     values = np.column_stack([*found.values()]).reshape(*(len(own) for own in nodes.values()), len(found))
     lines = dict(zip(found, interpolated([*nodes.values()], values, at.to_numpy().T), strict=True))
-    added = max(rms(lines[name] - exact[name]) / max(size[name], 1e-12) for name in exact)
-    return _Grid(nodes, whole, found, added)
+    return _Grid(nodes, whole, found, drawn.off(lines))
 
 
-def _nodes(
-    missed: _Missed,
-    at: pd.DataFrame,
-    exact: Mapping[str, np.ndarray],
-    size: Mapping[str, float],
-    name: str,
-    ends: tuple[float, float],
-    share: float,
-) -> np.ndarray:
+class _Drawn(NamedTuple):
+    """The model error at conditions drawn over the grid, which its interpolation is compared with."""
+
+    missed: _Missed
+    at: pd.DataFrame
+    exact: Mapping[str, np.ndarray]
+
+    def off(self, lines: Mapping[str, np.ndarray]) -> float:
+        """Rms error of the interpolated model error over its rms, for the worst channel."""
+        return max(rms(lines[name] - exact) / max(rms(exact), 1e-12) for name, exact in self.exact.items())
+
+
+def _nodes(drawn: _Drawn, name: str, ends: tuple[float, float], share: float) -> np.ndarray:
     """The fewest nodes of an input with an interpolation error of at most ``share`` of the model error in every channel."""
-    x, intervals = at[name].to_numpy(), 1
+    x, intervals = drawn.at[name].to_numpy(), 1
     while True:
         nodes = np.array([float(f"{node:.4g}") for node in np.linspace(*ends, intervals + 1)])
         below = np.clip(np.searchsorted(nodes, x) - 1, 0, intervals - 1)
-        low, high = (missed(at.assign(**{name: nodes[below + k]})) for k in (0, 1))
+        low, high = (drawn.missed(drawn.at.assign(**{name: nodes[below + k]})) for k in (0, 1))
         weight = (x - nodes[below]) / (nodes[below + 1] - nodes[below])
-        off = max(
-            rms((1.0 - weight) * low[key] + weight * high[key] - exact[key]) / max(size[key], 1e-12)
-            for key in exact
-        )
+        off = drawn.off({key: (1.0 - weight) * low[key] + weight * high[key] for key in low})
         if off <= share:
             return nodes
         # The error of linear interpolation is proportional to the square of the spacing.
