@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -203,60 +204,62 @@ def against_free_rolling(
     warnings: list[str] = [*derived]
     taken_off: dict[str, tuple[SlipZero, str]] = {}
     for of in dict.fromkeys(stated.values()):
-        heading, against, over = of
         rows = [k for k, sweep in enumerate(sweeps) if stated[sweep.file] == of]
-        if over is not None and over != ROAD:
-            for k in rows:
-                out[k] = _with(out[k], over_road(out[k].kappa, over))
-        readings = Driven(
-            *(np.concatenate(values) for values in zip(*(readings_of(out[k]) for k in rows), strict=True))
-        )
-        if _too_weak(readings):
-            raise InputError(
-                _weak(readings, config), file=config.path or config.sweep[0].file, key="columns.Fx_N"
-            )
-        if drive := unexplained_drive(readings):
-            raise InputError(
-                _not_driven_by(heading, drive, any("kappa" in sweeps[k].table for k in rows)),
-                file=config.path or config.sweep[0].file,
-                key="columns.kappa",
-            )
-        zero = slip_zero(readings)
-        if zero is None:
-            continue
-        zero = slip_zero(_with_free_wheels(readings, zero)) or zero
-        form = None if heading == FROM_SPEEDS else form_of(readings, _wheel_speed([out[k] for k in rows]))
-        by_speeds = heading == FROM_SPEEDS or (form is not None and form.over is not None)
-        wrong, key = _contradiction(heading, zero, by_speeds)
-        if wrong:
-            raise InputError(wrong, file=config.path or config.sweep[0].file, key=f"columns.{key}")
-        if form is not None and form.over != ROAD:
-            if over is not None:
-                wrong = f'{heading} is declared over = "{over}", which contradicts the recorded speeds: '
-                wrong += form.said(heading if over == ROAD else "what follows from it")
-                raise InputError(wrong, file=config.path or config.sweep[0].file, key="columns.kappa.over")
-            warnings.append(_of_form(heading, form))
-            if form.over is not None:
-                for k in rows:
-                    out[k] = _with(out[k], over_road(out[k].kappa, form.over))
-                readings = readings._replace(kappa=over_road(readings.kappa, form.over))
-                zero = slip_zero(_with_free_wheels(readings, zero)) or zero
-        if heading == FROM_SPEEDS:  # its reference is a mean radius, which nothing but Fx = 0 corrects
-            for k in rows:
-                out[k] = _less(out[k], zero)
-            continue
-        if with_errors and against is None and not zero.falls:
-            continue
-        said = sentence(heading, against, zero)
-        if not (against == FREE and zero.is_free_rolling):  # no remark if the declaration is right
-            expected = against is None if zero.is_free_rolling else against not in (None, FREE)
-            (notes if expected else warnings).append(said)
-        if against in (LOADED, UNLOADED) or (against is None and not zero.is_free_rolling):
-            if against is None:
-                taken_off |= {sweeps[k].file: (zero, said) for k in rows}
-            for k in rows:
-                out[k] = _less(out[k], zero)
+        own, form, zero = _of_column(of, [sweeps[k] for k in rows], config)
+        if form is not None:
+            warnings.append(_of_form(of.heading, form))
+        # A mean radius is the reference of slip from speeds: nothing but Fx = 0 corrects it, and it needs no remark.
+        shifted = zero is not None and of.heading == FROM_SPEEDS
+        left = with_errors and of.against is None and zero is not None and not zero.falls
+        if zero is not None and not shifted and not left:
+            is_free, said = zero.is_free_rolling, sentence(of.heading, of.against, zero)
+            if not (of.against == FREE and is_free):  # no remark if the declaration is right
+                expected = of.against is None if is_free else of.against not in (None, FREE)
+                (notes if expected else warnings).append(said)
+            shifted = not is_free if of.against is None else of.against != FREE
+            if shifted and of.against is None:
+                taken_off |= {one.file: (zero, said) for one in own}
+        for k, one in zip(rows, own, strict=True):
+            out[k] = _less(one, zero) if zero is not None and shifted else one
     return tuple(out), SlipRemarks(tuple(notes), tuple(warnings), taken_off)
+
+
+def _of_column(
+    of: _Stated, own: Sequence[Sweep], config: Config
+) -> tuple[Sequence[Sweep], SlipForm | None, SlipZero | None]:
+    """The sweeps of a slip column over the road's speed, an undeclared form of it, and the slip of zero force; None if unknown.
+
+    Raises InputError if the forces or the speeds contradict the column.
+    """
+    wrong = partial(InputError, file=config.path or config.sweep[0].file)
+    if of.over is not None:
+        own = _over_road(own, of.over)
+    readings = Driven(*map(np.concatenate, zip(*map(readings_of, own), strict=True)))
+    if _too_weak(readings):
+        raise wrong(_weak(readings, config), key="columns.Fx_N")
+    if drive := unexplained_drive(readings):
+        recorded = any("kappa" in one.table for one in own)
+        raise wrong(_not_driven_by(of.heading, drive, recorded), key="columns.kappa")
+    zero = slip_zero(readings)
+    if zero is None:
+        return own, None, None
+    zero = slip_zero(_with_free_wheels(readings, zero)) or zero
+    from_speeds = of.heading == FROM_SPEEDS
+    form = None if from_speeds else form_of(readings, _wheel_speed(own))
+    said, key = _contradiction(of.heading, zero, from_speeds or (form is not None and form.over is not None))
+    if said:
+        raise wrong(said, key=f"columns.{key}")
+    if form is None or form.over == ROAD:
+        return own, None, zero
+    if of.over is not None:
+        said = f'{of.heading} is declared over = "{of.over}", which contradicts the recorded speeds: '
+        said += form.said(of.heading if of.over == ROAD else "what follows from it")
+        raise wrong(said, key="columns.kappa.over")
+    if form.over is not None:
+        own = _over_road(own, form.over)
+        readings = readings._replace(kappa=over_road(readings.kappa, form.over))
+        zero = slip_zero(_with_free_wheels(readings, zero)) or zero
+    return own, form, zero
 
 
 class _Stated(NamedTuple):
@@ -295,6 +298,11 @@ def _stated(config: Config) -> dict[str, _Stated]:
 def _with(sweep: Sweep, kappa: np.ndarray) -> Sweep:
     """The sweep with another slip, which its table shows next to the one as read."""
     return replace(sweep, kappa=kappa, table=sweep.table.assign(kappa_free_rolling=kappa))
+
+
+def _over_road(sweeps: Sequence[Sweep], over: Over) -> Sequence[Sweep]:
+    """The sweeps with slip over the road's speed, from slip in another form."""
+    return sweeps if over == ROAD else [_with(one, over_road(one.kappa, over)) for one in sweeps]
 
 
 def _less(sweep: Sweep, zero: SlipZero) -> Sweep:
