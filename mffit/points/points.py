@@ -16,13 +16,6 @@ from mffit.sweeps.sweep import MeasuredRows
 INTEGER = frozenset({"direction", "mount", "sweep", "file", "line", "last_line", "setup"})
 SHARED = frozenset({"sweep_names", "files", "setups", "table"})
 OF_SI = {"deg": 180.0 / np.pi, "kPa": 1e-3}
-
-
-def of_si(column: str) -> float:
-    """Factor from SI to the unit of a condition of :data:`mffit.quantities.CONDITIONS`, by its column."""
-    return OF_SI.get(CONDITIONS[column].unit, 1.0)
-
-
 """Factors from SI to units of conditions."""
 COUNTED = {"sweep": "sweep_names", "file": "files", "setup": "setups"}
 """Index fields, and the field with the corresponding names."""
@@ -32,8 +25,14 @@ OPTIONAL: Mapping[str, Any] = {
     **dict.fromkeys(("direction", "mount"), 1),
     **dict.fromkeys(("sweep", "file", "line", "setup"), 0),
     "continuous": False,
+    **{"sweep_names": ("sweep",), "files": ("",), "setups": ("",), "table": None},
 }
 """Defaults of :func:`make_points`: not measured, rolling freely, forwards, normal mount, one of everything."""
+
+
+def of_si(column: str) -> float:
+    """Factor from SI to the unit of a condition of :data:`mffit.quantities.CONDITIONS`, by its column."""
+    return OF_SI.get(CONDITIONS[column].unit, 1.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -141,22 +140,12 @@ FIELDS = tuple(field.name for field in fields(Points))
 ARRAYS = tuple(name for name in FIELDS if name not in SHARED)
 
 
-def make_points(
-    alpha: Any,
-    gamma: Any,
-    Fz: Any,
-    *,
-    sweep_names: Sequence[str] = ("sweep",),
-    files: Sequence[str] = ("",),
-    setups: Sequence[str] = ("",),
-    table: pd.DataFrame | None = None,
-    **fields: Any,
-) -> Points:
+def make_points(alpha: Any, gamma: Any, Fz: Any, **fields: Any) -> Points:
     """Points from arrays or scalars in ISO-W and SI, broadcast to the common length (n,).
 
-    ``sweep_names``, ``files`` and ``setups`` are the names that the fields ``sweep``, ``file`` and ``setup`` count; ``table``
-    has the input columns as reported. Of the other ``fields`` of :class:`Points`, ``p``, ``V`` and ``phi_t`` are required;
-    ``OPTIONAL`` has the defaults of the others; ``last_line`` is ``line`` if it is not given.
+    Of the other ``fields`` of :class:`Points`, ``p``, ``V`` and ``phi_t`` are required; ``OPTIONAL`` has the defaults of the
+    others; ``last_line`` is ``line`` if it is not given. ``sweep_names``, ``files`` and ``setups`` are the names that the
+    fields ``sweep``, ``file`` and ``setup`` count; ``table`` has the input columns as reported.
 
     Raises TypeError if a required field is missing, or a field is unknown; ValueError if lengths disagree, or ``direction`` or
     ``mount`` is neither +1 nor -1.
@@ -166,6 +155,8 @@ def make_points(
     if missing := [name for name in ARRAYS if name not in given]:
         raise TypeError(f"make_points needs {', '.join(missing)}")
     _refuse_unknown(given)
+    table = given.pop("table")
+    names: dict[str, Any] = {name: tuple(given.pop(name)) for name in COUNTED.values()}
     (n,) = np.broadcast_shapes((1,), *(np.shape(values) for values in given.values()))
     arrays: dict[str, Any] = {name: _filled(name, given[name], n) for name in ARRAYS}
     for name in ("direction", "mount"):
@@ -174,11 +165,6 @@ def make_points(
     table = _no_table(n) if table is None else table.reset_index(drop=True)
     if len(table) != n:
         raise ValueError(f"the table has {len(table)} rows for {n} points")
-    names: dict[str, Any] = {
-        "sweep_names": tuple(sweep_names),
-        "files": tuple(files),
-        "setups": tuple(setups),
-    }
     return Points(**arrays, **names, table=table)
 
 
