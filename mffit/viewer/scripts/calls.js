@@ -7,6 +7,16 @@ export const ENDED = "The server of this window has ended. Everything that you s
 // Once the server was away, it is asked nothing more: another user of this computer may listen at its port by then.
 let ended = false;
 export const hasEnded = () => ended;
+// What works with a server only, of the class "live", is dead at its end; so is what is made later.
+export function alive(control) {
+  control.classList.add("live");
+  control.disabled ||= ended;
+  return control;
+}
+function end() {
+  ended = true;
+  for (const control of document.querySelectorAll(".live")) control.disabled = true;
+}
 // The answer as an object, null without a server. A call is never given up: what it asks for may yet be done.
 export async function asked(address, say, given = {}) {
   if (ended) return null;
@@ -14,11 +24,11 @@ export async function asked(address, say, given = {}) {
     say(`No answer for ${PATIENCE / 1000} s; still waiting. Do not repeat it: it may yet be done.`, true), PATIENCE);
   try {
     const answer = await fetch(address, given);
-    ended ||= answer.status === 403;
+    if (answer.status === 403) end();
     return ended ? null : await answer.json().catch(() =>
       ({error: `The server answered with status ${answer.status}; see the terminal.`}));
   } catch {
-    ended = true;
+    end();
     return null;
   } finally {
     clearTimeout(late);
@@ -30,7 +40,7 @@ export const sent = body =>
 export function listen(heard) {
   const name = `mffit ${new URL(".", location).pathname}`, pages = new BroadcastChannel(name);
   const hear = state => {
-    ended ||= state === null;
+    if (state === null) end();
     heard(ended ? null : state);
   };
   const tell = state => { hear(state); pages.postMessage(state); };
@@ -66,6 +76,7 @@ export function takesRecordings(say, stored) {
     if (!taken.length) {
       return say(`No recording among ${these(files.length, "file")}: their names end in ${endings.join(", ")}.`, true);
     }
+    if (ended) return say(ENDED, true);
     const size = taken.reduce((sum, file) => sum + file.size, 0) / 1e6;
     const what = `${these(taken.length, "recording")} (${size < 0.1 ? "less than 0.1" : size.toFixed(1)} MB)`;
     const rest = others ? ` ${others} other ${others === 1 ? "file is" : "files are"} not a recording.` : "";

@@ -1,5 +1,5 @@
 // A local window: every click is saved in tyre.toml, and Refit runs the real fit.
-import {ENDED, asked, hasEnded, listen, sent, takesRecordings} from "./calls.js";
+import {ENDED, alive, asked, hasEnded, listen, sent, takesRecordings} from "./calls.js";
 import {cells, showRow} from "./coefficients.js";
 import {content} from "./content.js";
 import {byId, details, element, key} from "./dom.js";
@@ -42,7 +42,7 @@ function edit(name, given, refused = found => say(found.error, true)) {
   };
   return waiting = waiting.then(change);
 }
-hooks.canUndo = () => live.can_undo;
+hooks.canUndo = () => live.can_undo && !hasEnded();
 hooks.undoEdit = () => { waiting = waiting.then(() => live.can_undo ? post("undo") : false); };
 const entryOf = hooks.entryOf = name => live.hand[name] ?? null;
 
@@ -78,7 +78,7 @@ hooks.extendRow = (row, keys, box) => {
     problem.before(made);
     made.querySelector("input").focus();
   };
-  keys.prepend(hold, start, limits, free);
+  keys.prepend(...[hold, start, limits, free].map(alive));
   box.append(problem);
   if (row.name in drafts) form();
   keys.refresh = () => {
@@ -105,7 +105,7 @@ function limitsForm(row, change, refused, close) {
     label.append(input);
     form.append(label);
   }
-  const save = Object.assign(element("button", "small", "save"), {type: "submit"}),
+  const save = alive(Object.assign(element("button", "small", "save"), {type: "submit"})),
     cancel = key("cancel", "close without saving", close);
   form.append(save, cancel);
   form.noValidate = true;
@@ -132,7 +132,7 @@ byId("other-file").addEventListener("change", async event => {
 });
 const leaveOut = hooks.leaveOut = () => {
   const members = chosen.filter(i => !left[i]), dialog = byId("ask");
-  if (!members.length) return;
+  if (!members.length || hasEnded()) return;
   byId("ask-about").textContent = members.length === 1 ? `${pointName(members[0])} gets no weight in the fit.`
     : `${members.length} points get no weight in the fit.`;
   dialog.returnValue = "";
@@ -149,7 +149,7 @@ hooks.chosenActions = () => {
     leaveOut));
   if (chosen.some(i => left[i])) actions.push(key("Take back", "removes it from [fit] exclude of tyre.toml",
     () => edit("take_back", {readings: lineRanges(chosen.filter(i => left[i]))})));
-  return actions;
+  return actions.map(alive);
 };
 
 function setLive(state) {
@@ -196,13 +196,14 @@ function showNews() {
   else box.append("Refit takes them in.");
 }
 function showStatus() {
+  if (hasEnded()) dropMoves(one => !one.trial);
   showNews();
   byId("refit").disabled = hasEnded() || !!live.run;
   byId("refit").textContent = live.fits ? "Refit" : "Fit";
   byId("refit").hidden = !live.fits && !!live.run;
   byId("refit").classList.toggle("main", !live.is_fitted && !live.run);
   byId("stop").hidden = hasEnded() || !live.run;
-  byId("undo").disabled = !moves.length && !live.can_undo;
+  byId("undo").disabled = !moves.length && !hooks.canUndo();
   byId("undo").hidden = !live.fits && byId("undo").disabled;
   showLinks();
   if (hasEnded()) return say(ENDED, true);
@@ -239,7 +240,7 @@ function showLinks() {
 // ---- settings: every key of tyre.toml that is one value, with its default; empty fields are not written
 let settingsOf = "";
 async function showSettings() {
-  const box = byId("settings"), home = box.querySelector("div");
+  const box = byId("settings"), home = byId("settings-keys");
   if (!box.open || settingsOf === live.digest) return;
   settingsOf = live.digest;
   const tables = await asked("settings", say);

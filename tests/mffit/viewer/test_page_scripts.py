@@ -22,7 +22,7 @@ import pytest
 from small_rigs import SAMPLE
 
 import tir
-from mffit.config.lines import inside, line_ranges, ranges_text
+from mffit.config.lines import line_ranges, ranges_text
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.points import concatenate
 from mffit.rig import Simulation
@@ -343,7 +343,7 @@ def test_lines_mean_the_same_in_a_page_and_in_python(engine, data):
         text = ", ".join(f"{a}-{b}" if a != b else str(a) for a, b in ends)
         engine(f"markLeftOut([{{file: {json.dumps(name)}, lines: {json.dumps(text)}}}])")
         wanted = np.zeros(len(line), dtype=bool)
-        wanted[mine] = inside(line[mine], line_ranges(text))
+        wanted[mine] = np.any([(a <= line[mine]) & (line[mine] <= b) for a, b in ends], axis=0)
         assert np.array_equal(np.array(engine("left"), dtype=bool), wanted)
         chosen = np.sort(rng.choice(mine, 5, replace=False))
         (entry,) = engine(f"lineRanges({chosen.tolist()})")

@@ -531,6 +531,15 @@ def test_a_server_of_somebody_else_at_the_port_is_asked_nothing(browser, tyre_to
         press(browser, ".coefficient[data-name=PCY1] .keys button")  # hold
         for button in ("#refit", "#undo", "#settings summary"):
             press(browser, button)
+        ask(browser, "mffit.choose(0)")
+        browser.find_element("css selector", ".panel canvas").send_keys("\ue017")  # Delete
+        browser.execute_script("for (const one of document.querySelectorAll('details')) one.open = true")
+        words = {"Refit", "hold", "start", "free", "limits", "Leave out", "Try a file"}
+        usable = [e.text for e in browser.find_elements("css selector", "button") if e.is_enabled()]
+        assert words & {*usable} == set()
+        assert words - {e.text for e in browser.find_elements("css selector", "button")} == {"free"}
+        assert "Zoom" in usable  # what the page does by itself
+        assert not browser.find_element("id", "ask").is_displayed()
         time.sleep(6.0)  # a browser comes back to a stream after 3 s or so
         assert browser.find_elements("css selector", "#links a, #add-recordings:not([hidden])") == []
         assert had_ended in status()
