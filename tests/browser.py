@@ -30,6 +30,13 @@ if (matchMedia('print').matches) for (const control of document.querySelectorAll
   const framed = getComputedStyle(control).borderTopStyle !== 'none';
   if (control.checkVisibility() && framed) found.push(`on paper: ${control.outerHTML.slice(0, 60)}`);
 }
+const pen = document.createElement('canvas').getContext('2d');
+for (const field of document.querySelectorAll('select, input[type=number]')) {
+  if (!field.checkVisibility()) continue;
+  const text = field.tagName === 'SELECT' ? field.selectedOptions[0]?.text ?? '' : field.value;
+  pen.font = getComputedStyle(field).font;
+  if (pen.measureText(text).width > field.clientWidth) found.push(`cut: ${text}`);
+}
 for (const drawing of document.querySelectorAll('figure img')) {
   if (matchMedia('print').matches && drawing.closest('.screen-only')) continue;
   const box = drawing.getBoundingClientRect(), said = drawing.closest('[role=img]').getAttribute('aria-label').slice(0, 40);

@@ -94,7 +94,7 @@ function paint(panel, pen, width, height, ratio) {
   for (const {curve, now} of lines) stroke(pen, now, place, colour(curve), lines.length > 30 ? 1 : 2, []);
   marks(pen, shown, place);
   pen.restore();
-  labels(pen, typical, place);
+  labels(pen, typical, lines, place);
   const said = [];
   if (channels.includes(shown.y)) {
     const {rmse, over_noise, about} = misfits[shown.y] ??= misfit(shown.y);
@@ -201,23 +201,36 @@ function typicalOf(lines) {
   }
   return found;
 }
-// The level of each colour beside its curve, where there is room.
-function labels(pen, typical, {X, Y, start, width, height}) {
+// The level of each colour beside its curve, where there is room and the fewest curves pass below it.
+function labels(pen, typical, lines, {X, Y, start, width, height}) {
   const words = facet(state.colour).labels, taken = [];
   if (words.length < 2) return;
   for (const [level, {now}] of typical) {
     const long = LETTER * words[level].length, last = now.length / 2 - 1;
+    let best = null;
     for (const share of LABELS_AT) {
       const k = 2 * Math.round(share * last), x = Math.min(width - RIGHT - 2,
         Math.max(start + long + 4, X(now[k]) + (share < .5 ? long : 0))), y = Y(now[k + 1]) - 5;
       const own = [x - long, y - LINE + 2, x, y + 2];
       if (!(y > TOP + LINE - 2 && y < height - BOTTOM) ||
         taken.some(box => own[0] < box[2] && own[2] > box[0] && own[1] < box[3] && own[3] > box[1])) continue;
-      taken.push(own);
-      over(pen, words[level], x, y, palette[level]);
-      break;
+      const below = lines.filter(line => crosses(line.now, own, X, Y)).length;
+      if (!best || below < best.below) best = {below, own, x, y};
+      if (!below) break;
     }
+    if (!best) continue;
+    taken.push(best.own);
+    over(pen, words[level], best.x, best.y, palette[level]);
   }
+}
+// Whether a curve passes through a box of the picture.
+function crosses(curve, [left, top, right, bottom], X, Y) {
+  for (let k = 2; k < curve.length; k += 2) {
+    const [x0, x1] = [X(curve[k - 2]), X(curve[k])], [y0, y1] = [Y(curve[k - 1]), Y(curve[k + 1])];
+    if (Math.max(x0, x1) < left || Math.min(x0, x1) > right) continue;
+    if (Math.max(y0, y1) > top && Math.min(y0, y1) < bottom) return true;
+  }
+  return false;
 }
 // The same points in every picture: those chosen by a click, and the one under the pointer. Many are inked as pixels
 // instead.
