@@ -1,6 +1,6 @@
-"""What pydantic finds wrong in the tables of a TOML file, as one sentence with file, line and key.
+"""One sentence with file, line and key from pydantic's errors about the tables of a TOML file.
 
-Nothing here knows a table: the keys to suggest are read from the pydantic models.
+The keys to suggest for an unknown one are those of the pydantic models.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""TOML files as content and the line of every key; syntax only, no key has a meaning here."""
+"""Content of a TOML file and the line of each key; the keys themselves are not interpreted here."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ DECIMAL_COMMA = re.compile(r"=\s*([-+]?\d+),(\d+)\s*(#|$)")
 
 
 class TomlKind(NamedTuple):
-    """A TOML file that a command asks for, and what a message says where it got something else."""
+    """Kind of TOML file that a command expects, with the hints for a message about any other file."""
 
     name: str  #: usual name, ``tyre.toml``
     tables: Collection[str]  #: that such a file may have

@@ -1,7 +1,7 @@
 """Columns under unknown headings, by the unit that the file states for them, and by words in the heading.
 
-A unit of pressure, of speed or of time leaves one channel: the only column in it is taken, with a question. Other units leave
-several channels, or several columns, and only the question, which proposes a column whose words fit.
+If pressure, speed or time is missing and only one unused column is in a unit of it, that column is taken, with a question. Where
+the unit fits several channels, or several columns fit, the question proposes the column whose heading has fitting words.
 """
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ def questions(raw: RawTable, found: Collection[str], taken: Collection[str]) -> 
 
 
 def question(missing: Sequence[Channel], near: Sequence[str], raw: RawTable, alike: str) -> str:
-    """Which of the columns ``near``, ``alike`` in some way, is which of the missing channels, and how to say so."""
+    """Ask whether one of the columns ``near`` is one of the missing channels; ``alike`` says why these columns are proposed."""
     names = [f"{channel.name} ({channel.description})" for channel in missing]
     columns = ", ".join(f'"{heading}" [{raw.unit(heading)}]'.removesuffix(" []") for heading in near)
     name, heading = missing[0].name, near[0]

@@ -74,12 +74,14 @@ def guesses(
     """
     raw, of_rest = _rolling(raw)
     named = {name: heading for name, heading in named.items() if heading in raw.headings}
-    columns = _number_columns(raw, named)
+    columns = {
+        c.name: known[0]._replace(given=c.name in given)
+        for c in SWEEP_CHANNELS
+        if c.kind == "number" and c.name != SLIP and (known := candidates(raw, c, named))
+    }
     slips = candidates(raw, BY_NAME[SLIP], named) or _called_slip(raw)
-    columns.pop(SLIP, None)
-    columns |= {name: columns[name]._replace(given=True) for name in given if name in columns}
-    known = {column.heading for column in (*columns.values(), *slips)} | set(named.values())
-    by_unit = only_ones(raw, columns, known)
+    taken = {column.heading for column in (*columns.values(), *slips)} | set(named.values())
+    by_unit = only_ones(raw, columns, taken)
     columns |= by_unit
     speed = columns.get("V_mps")
     rolls_back = speed is not None and float(np.nanmedian(speed.values)) < 0.0
@@ -113,9 +115,19 @@ def guesses(
 def _asked(raw: RawTable, found: Mapping[str, Guess]) -> list[str]:
     """Questions about channels that a file may have, the load in its names, and its time."""
     asked = questions(raw, found, {guess.heading for guess in found.values()})
-    if FROM_NAMES in raw.about and "Fz_N" in found and not found["Fz_N"].stated:
-        asked.append(_load_of_names(raw.about[FROM_NAMES], found["Fz_N"]))
-    return asked if found.keys() & {"time_s", "t_s"} else [*asked, _without_time(raw)]
+    load = found.get("Fz_N")
+    if FROM_NAMES in raw.about and load is not None and not load.stated:
+        unit = load.unit_of_readings
+        asked.append(
+            f"the load is taken {raw.about[FROM_NAMES]}, in {unit}: is it in {unit}? If not, write "
+            f'Fz_N = {{ column = "{load.heading}", unit = "lbf" }} under [columns], with the true unit'
+        )
+    if not found.keys() & {"time_s", "t_s"}:
+        asked.append(
+            f"no time: each of {len(raw)} rows is treated as a finished point; if they are samples of a recording, name its "
+            'time under [columns], for example time_s = "..."'
+        )
+    return asked
 
 
 def _rolling(raw: RawTable) -> tuple[RawTable, list[str]]:
@@ -149,17 +161,6 @@ def corrected(guessed: Guesses, raw: RawTable, choices: Collection[ColumnChoice]
     words = touched | chosen.keys()
     remarks = tuple(one for one in guessed.remarks if not words & set(re.split(r"[\s,:;()\"]+", one)))
     return Guesses({c.name: found[c.name] for c in SWEEP_CHANNELS if c.name in found}, remarks)
-
-
-def _headings(raw: RawTable) -> dict[str, str]:
-    """The heading by its simplified spelling; the first one if several share a spelling."""
-    return {simplified(heading): heading for heading in reversed(raw.headings)}
-
-
-def _number_columns(raw: RawTable, named: Mapping[str, str]) -> dict[str, FoundChannel]:
-    """The column of each numerical channel: the first known name with suitable readings."""
-    found = {c.name: candidates(raw, c, named) for c in SWEEP_CHANNELS if c.kind == "number"}
-    return {name: columns[0] for name, columns in found.items() if columns}
 
 
 def _in_one_frame(columns: dict[str, FoundChannel]) -> tuple[dict[str, FoundChannel], list[str]]:
@@ -209,7 +210,7 @@ def _known_headings(raw: RawTable, channel: Channel, others: Collection[str]) ->
     with_unit = {heading: WITH_UNIT.fullmatch(heading) for heading in reversed(raw.headings)}
     plain = {simplified(m[1]): heading for heading, m in with_unit.items() if m}
     names = [simplified(name) for name in (channel.name, *channel.aliases)]
-    full = _headings(raw)
+    full = {simplified(heading): heading for heading in reversed(raw.headings)}
     found = [full[name] for name in names if name in full]
     found += [plain[name] for name in names if name in plain and _unit_within(plain[name], channel)]
     return [heading for heading in dict.fromkeys(found) if heading not in others]
@@ -266,20 +267,3 @@ def _of_finished_points(columns: Mapping[str, FoundChannel], found: Mapping[str,
     step = float(np.median(np.abs(np.diff(seconds))))
     least, most = constants.TIME_BETWEEN_POINTS
     return f"rows are {step:.3g} s apart, so each is a finished point" if least < step < most else ""
-
-
-def _load_of_names(names: str, load: Guess) -> str:
-    """The question about the unit of a load that names of columns state."""
-    unit = load.unit_of_readings
-    return (
-        f"the load is taken {names}, in {unit}: is it in {unit}? If not, write "
-        f'Fz_N = {{ column = "{load.heading}", unit = "lbf" }} under [columns], with the true unit'
-    )
-
-
-def _without_time(raw: RawTable) -> str:
-    """The remark for a file without time: every row is a point."""
-    return (
-        f"no time: each of {len(raw)} rows is treated as a finished point; if they are samples of a recording, name its time "
-        'under [columns], for example time_s = "..."'
-    )

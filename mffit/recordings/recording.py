@@ -83,7 +83,7 @@ def recordings_of(
 
 
 def check_headings(headings: Mapping[str, str], files: Sequence[Path]) -> None:
-    """Refuse headings of channels that there are not, or that no readable file has."""
+    """Refuse unknown channels, and headings that no readable file has."""
     for name, heading in headings.items():
         if name not in BY_NAME:
             raise InputError(unknown_channel(name), key=f"--column {name}")
@@ -138,7 +138,6 @@ def recording_of(
             file=path,
             line=raw.heading_line,
         )
-    clock = _clock(raw, found.get("time_s"))
     return SniffedRecording(
         path=path,
         kind=formats.format_of(path).name,
@@ -147,9 +146,7 @@ def recording_of(
         samples=len(raw),
         guesses=found,
         about=dict(raw.about),
-        rate=clock.rate,
-        seconds=clock.seconds,
-        gaps=clock.gaps,
+        **_clock(raw, found.get("time_s"))._asdict(),
         remarks=remarks,
         backward="direction" not in found
         and (rolls_backward(path) or speed_is_negative(found) if chosen is None else chosen.backward),

@@ -1,4 +1,4 @@
-"""What a file says of its test in its own texts: title, and name of the tyre, in a line above the readings or in a column."""
+"""Title of a test and name of its tyre, from the lines above the readings of a file or from a column."""
 
 from __future__ import annotations
 

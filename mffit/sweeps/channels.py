@@ -9,6 +9,7 @@ from importlib import resources
 
 from mffit.constants import LIKENESS_OF_MISSPELT
 from mffit.errors import meant
+from mffit.sweeps.about import simplified
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,19 +48,16 @@ def _read() -> tuple[Channel, ...]:
 
 SWEEP_CHANNELS = _read()
 BY_NAME = {channel.name: channel for channel in SWEEP_CHANNELS}
+NAMED = {simplified(name): one for one in SWEEP_CHANNELS for name in (one.name, *one.aliases)}
+"""The channel of every known name."""
 
 
 def nearest_heading(channel: Channel, headings: Iterable[str]) -> str:
-    """The heading that most likely names this channel; "" if none does. One that names another channel is not it."""
-    headings = list(headings)
-    written = {heading.lower(): heading for heading in headings}
-    for alias in (channel.name, *channel.aliases):
-        if alias.lower() in written:
-            return written[alias.lower()]
-    taken = {
-        name.lower() for one in SWEEP_CHANNELS if one is not channel for name in (one.name, *one.aliases)
-    }
-    written = {low: heading for low, heading in written.items() if low not in taken}
+    """The heading that most likely names this channel; "" if none does. Names of other channels are ignored."""
+    known = {heading: NAMED.get(simplified(heading)) for heading in headings}
+    if named := [heading for heading, one in known.items() if one is channel]:
+        return named[0]
+    written = {heading.lower(): heading for heading, one in known.items() if one is None}
     near = meant(channel.name.lower(), written)
     stem = channel.name.rpartition("_")[0].lower() or channel.name.lower()
     starts = [heading for low, heading in written.items() if low.startswith(stem)]
@@ -73,7 +71,7 @@ def nearest_channel(heading: str, *, likeness: float) -> str:
 
 
 def unknown_channel(name: str) -> str:
-    """The error sentence about the name of a channel that there is not."""
+    """Error sentence about an unknown name of a channel."""
     near = nearest_channel(name, likeness=LIKENESS_OF_MISSPELT)
     hint = f'did you mean "{near}"?' if near else f"known columns are {', '.join(BY_NAME)}"
     return f"is not a column of a sweep; {hint}"

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.sweeps import constants
-from mffit.sweeps.channels import SWEEP_CHANNELS
+from mffit.sweeps.about import simplified
+from mffit.sweeps.channels import NAMED
 from mffit.sweeps.raw_table import Cells, RawTable
 
 WITH_LOAD = re.compile(
@@ -131,9 +132,8 @@ def _sets(columns: Mapping[str, Cells]) -> list[_Set]:
 
 def _channel(stem: str) -> str:
     """The channel of a known name; "" for another name."""
-    low = stem.lower().replace(" ", "_")
-    known = (one.name for one in SWEEP_CHANNELS if low in map(str.lower, (one.name, *one.aliases)))
-    return next(known, "")
+    known = NAMED.get(simplified(stem))
+    return known.name if known else ""
 
 
 def _in_proportion(sizes: Mapping[float, Cells]) -> bool:
