@@ -145,13 +145,10 @@ def _recording(name: str, recordings: Sequence[Path]) -> Path | None:
     exact = [path for path in recordings if name.lower() in (path.name.lower(), stems[path])]
     if exact:
         return exact[0] if len(exact) == 1 else None
+    pattern = rf"{re.escape(name.lower())}(?!\d)"
     if name.isdigit():
-        number = rf"(?:(?:run|test|lauf|messung|versuch|nr)[\s_.-]*0*{int(name)}(?!\d)|(?<!\d)0*{int(name)}$)"
-        found = [path for path, stem in stems.items() if re.search(number, stem)]
-    else:
-        found = [
-            path
-            for path, stem in stems.items()
-            if name and re.search(rf"{re.escape(name.lower())}(?!\d)", stem)
-        ]
+        pattern = (
+            rf"(?:(?:run|test|lauf|messung|versuch|nr)[\s_.-]*0*{int(name)}(?!\d)|(?<!\d)0*{int(name)}$)"
+        )
+    found = [path for path, stem in stems.items() if name and re.search(pattern, stem)]
     return found[0] if len(found) == 1 else None

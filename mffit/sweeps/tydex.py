@@ -130,12 +130,11 @@ def _entry(line: str) -> Entry:
 
 
 def _physical(channel: Entry, values: np.ndarray) -> np.ndarray:
-    defaults = (1.0, 0.0, 0.0)
-    stated = [_float(word) for word in channel.words[: len(defaults)]]
-    given = [
-        value if math.isfinite(value) else default for value, default in zip(stated, defaults, strict=False)
-    ]
-    factor, before, after = (*given, *defaults[len(given) :])
+    stated = (*map(_float, channel.words[:3]), *3 * (math.nan,))
+    factor, before, after = (
+        value if math.isfinite(value) else default
+        for value, default in zip(stated, (1.0, 0.0, 0.0), strict=False)
+    )
     return factor * (values + before) + after
 
 

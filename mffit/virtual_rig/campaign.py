@@ -16,7 +16,7 @@ from mffit.config.models import SetupTable
 from mffit.errors import InputError
 from mffit.rig_errors import BY_NAME, ZEROS, Faults, number_of
 from mffit.virtual_rig.machine import Channels, Machine, steady
-from mffit.virtual_rig.plan import ADDED, NoiseTable, RigPlan, RollingRadiusPlan, SweepPlan
+from mffit.virtual_rig.plan import MEASURED, NoiseTable, RigPlan, RollingRadiusPlan, SweepPlan
 from mffit.virtual_rig.recording import record
 from mffit.virtual_rig.settings import Settings, settings_of, usual_speed
 from mffit.virtual_rig.tables import point_table, recorded_table
@@ -119,20 +119,11 @@ def sweep_table(
 
 def scattered(forces: Channels, noise: NoiseTable, generator: np.random.Generator) -> Channels:
     """The channels of finished points with added noise."""
-    n = len(forces.Fy)
-    Fy, Mz, My = generator.standard_normal((3, n))
-    # Further channels draw after these, so an additional channel does not change the others.
-    added = {
-        name.partition("_")[0]: (noise.of(name) or 0.0) * generator.standard_normal(n)
-        for name in ADDED
-        if noise.of(name) is not None
-    }
-    return forces._replace(
-        Fy=forces.Fy + noise.Fy_N * Fy,
-        Mz=forces.Mz + noise.Mz_Nm * Mz,
-        My=forces.My + (noise.My_Nm or 0.0) * My,
-        **{name: getattr(forces, name) + scatter for name, scatter in added.items()},
-    )
+    for name in (*MEASURED, *noise.added):
+        channel = name.partition("_")[0]
+        scatter = (noise.of(name) or 0.0) * generator.standard_normal(len(forces.Fy))
+        forces = forces._replace(**{channel: getattr(forces, channel) + scatter})
+    return forces
 
 
 def truth_of(plan: RigPlan, machine: Machine, faults: Mapping[str, Faults], seed: int) -> Truth:

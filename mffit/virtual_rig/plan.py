@@ -93,8 +93,10 @@ class FaultsTable(OwnFaultsTable):
     draw: bool = False  #: draw declared errors without a given value from their uncertainty in [rig]
 
 
+MEASURED = ("Fy_N", "Mz_Nm", "My_Nm")
 ADDED = ("Fx_N", "Mx_Nm", "RL_m", "omega_radps")
-"""Columns of channels that a rig may measure in addition to Fy, Mz and My."""
+"""Columns of the channels that a rig measures, and may measure in addition. Noise is drawn in this order, so that an additional
+channel does not change the others."""
 
 
 class NoiseTable(Table):

@@ -11,7 +11,7 @@ import numpy as np
 import scipy  # its parts are loaded on first use
 
 from mffit.virtual_rig.machine import Channels, Machine, at_the_tyre, reported, true_alpha
-from mffit.virtual_rig.plan import RecordingTable
+from mffit.virtual_rig.plan import MEASURED, RecordingTable
 from mffit.virtual_rig.settings import Settings
 
 
@@ -48,15 +48,11 @@ def record(
     if np.any(kappa):  # the force lags behind the slip; the reported slip does not
         forces = forces._replace(slip=at_the_tyre(machine, seen, seen.alpha).slip)
     turned = settings.V[0] / state.Re * time
-    forces = forces._replace(
-        Fy=forces.Fy + table.ripple_Fy_N * np.sin(turned) + noise(time, table.noise_Fy_N, table, generator),
-        Mz=forces.Mz + table.ripple_Mz_Nm * np.cos(turned) + noise(time, table.noise_Mz_Nm, table, generator),
-        My=forces.My + noise(time, table.noise_My_Nm, table, generator),
-        Fz=forces.Fz + noise(time, table.noise_Fz_N, table, generator),
-    )
-    for name in added:
-        channel, size = name.partition("_")[0], getattr(table, f"noise_{name}")
-        read = getattr(forces, channel) + noise(time, size, table, generator)
+    ripple = {"Fy": table.ripple_Fy_N * np.sin(turned), "Mz": table.ripple_Mz_Nm * np.cos(turned)}
+    for name in (*MEASURED, "Fz_N", *added):
+        channel = name.partition("_")[0]
+        read = getattr(forces, channel) + ripple.get(channel, 0.0)
+        read = read + noise(time, getattr(table, f"noise_{name}"), table, generator)
         forces = forces._replace(**{channel: read})
     return Recording(time, seen, forces)
 

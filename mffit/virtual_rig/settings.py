@@ -74,7 +74,7 @@ def _rolled(sweeps: list[Settings]) -> list[Settings]:
 
 
 def _settings(plan: RigPlan, sweep: SweepPlan, begins: int, pause: float) -> Settings:
-    usual = plan.tables.conditions
+    usual, usual_radius = plan.tables.conditions, plan.declared.rig.radius
     V, p, Fz, gamma, alpha, kappa = (
         grid.ravel()
         for grid in np.meshgrid(
@@ -101,15 +101,10 @@ def _settings(plan: RigPlan, sweep: SweepPlan, begins: int, pause: float) -> Set
         mount=np.full(n, 1 if sweep.mount == "normal" else -1),
         rolled_m=np.zeros(n),
         side=float(np.sign(plan.path(sweep) * plan.phi_t_sign)),
-        outward=_outward(plan, sweep),
+        outward=0.0 if usual_radius is None else 1.0 / abs(plan.path(sweep)) - usual_radius,
         kappa=kappa,
         free=sweep.free_rolling,
     )
-
-
-def _outward(plan: RigPlan, sweep: SweepPlan) -> float:
-    usual = plan.declared.rig.radius
-    return 0.0 if usual is None else 1.0 / abs(plan.path(sweep)) - usual
 
 
 def usual_speed(sweeps: list[Settings]) -> float:
