@@ -13,7 +13,7 @@ from mffit.constants import UPRIGHT
 from mffit.points import Points
 from mffit.recordings import constants
 from mffit.recordings.recording import rolls_backward
-from mffit.recordings.sniffed import Sniffed
+from mffit.recordings.sniffed import Sniffed, points_from
 from mffit.suspicion.constants import SIDESLIP_OF_SLOPES
 from mffit.sweeps import formats
 
@@ -32,7 +32,8 @@ def disc_signs(sniffed: Sniffed) -> list[str]:
     if backward:
         why = "is named as rolling backwards" if rolls_backward(backward[0]) else "has negative speeds"
         found.append(f"{backward[0].name} {why}")
-    if any(_both_ways(sniffed.points, r.path) for r in sniffed.recordings):
+    of_files = [points_from(sniffed.points, {str(r.path.absolute())}) for r in sniffed.recordings]
+    if any(len(np.unique(points.direction)) > 1 for points in of_files):
         found.append("the wheel rolls both ways")
     zero = zero_of_upright(sniffed.points)
     if abs(zero) > constants.ZERO_OF_A_DISC:
@@ -54,12 +55,6 @@ def zero_of_upright(points: Points) -> float:
         return math.nan
     slope, offset = np.polyfit(alpha[near], points.Fy[near] / points.Fz[near], 1)
     return float(-offset / slope) if slope < 0.0 else math.nan
-
-
-def _both_ways(points: Points, path: Path) -> bool:
-    """Whether the points of this file have both rolling directions."""
-    rows = np.array([name == str(path.absolute()) for name in points.files], dtype=bool)[points.file]
-    return len(np.unique(points.direction[rows])) > 1
 
 
 def files_of_folder(folder: Path) -> Sequence[Path]:

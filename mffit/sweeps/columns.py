@@ -260,7 +260,7 @@ def with_missing_times(time: np.ndarray) -> np.ndarray:
     if np.all(samples > 1):
         return time
     step = float(np.median(steps[samples == 1]))
-    told = np.r_[False, np.rint(steps / step) == samples, False]
+    told = np.r_[False, 2.0 * np.abs(steps - samples * step) < step, False]
     rows = np.arange(len(time))
     between = np.searchsorted(known, rows)
     return np.where(np.isnan(time) & told[between], np.interp(rows, known, time[known]), time)

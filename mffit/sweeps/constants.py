@@ -32,3 +32,11 @@ LARGEST_FALL_OF_GRIP = Real(
     "Peak side force over load at the smallest load of a test over that at the largest: numbers in the names of columns that "
     "are loads keep within it, and numbers of wheels, which double from 1 to 2, do not.",
 )
+CAMBER_THAT_TURNS_LOAD = Real(
+    5.0, "deg", "Below this camber both definitions of the load agree within the rig's control."
+)
+STEADIER_LOAD_RATIO = Real(
+    0.5,
+    "-",
+    "A load column is vertical if it varies less than this times the load turned from the wheel plane.",
+)

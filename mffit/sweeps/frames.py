@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config.models import MachineTable
+from mffit.sweeps import constants
 from mffit.sweeps.sweep import Sweep
 
 TYDEX_NAME = re.compile(r"[FM][XYZ]([CHW])", re.IGNORECASE)
@@ -110,14 +111,16 @@ def load_is_vertical(sweeps: Sequence[Sweep]) -> bool:
     """Whether the load column is the vertical load, although the forces are in frame C.
 
     Rigs control the vertical load, so it varies little along a cambered sweep. The column is therefore interpreted in the way
-    that makes the vertical load vary less. In upright sweeps both interpretations give the same forces.
+    that makes the vertical load vary less. Without cambered sweeps both interpretations give the same forces.
     """
-    steps = [
-        np.abs(np.diff([sweep.Fz, forces_turned(sweep, load_is_vertical=False).Fz])) / sweep.Fz[1:]
-        for sweep in sweeps
-        if np.any(sweep.gamma)
-    ]
-    if not steps:
+    as_given, turned = [], []
+    for sweep in sweeps:
+        if np.max(np.abs(sweep.gamma)) < constants.CAMBER_THAT_TURNS_LOAD.rad:
+            continue
+        as_given.append(np.abs(np.diff(sweep.Fz)) / sweep.Fz[1:])
+        vertical = forces_turned(sweep, load_is_vertical=False).Fz
+        turned.append(np.abs(np.diff(vertical)) / sweep.Fz[1:])
+    if not as_given:
         return False
-    as_given, turned = np.median(np.concatenate(steps, axis=1), axis=1)
-    return bool(as_given < turned)
+    limit = constants.STEADIER_LOAD_RATIO * np.median(np.concatenate(turned))
+    return bool(np.median(np.concatenate(as_given)) < limit)

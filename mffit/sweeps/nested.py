@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.errors import InputError
+from mffit.sweeps.about import simplified
+from mffit.sweeps.channels import NAMED
 from mffit.sweeps.matlab_apart import Leaf
 from mffit.sweeps.raw_table import Cells
 from mffit.sweeps.wide import RUN
@@ -34,8 +36,8 @@ class Content(NamedTuple):
 def content_of(leaves: Iterable[Leaf]) -> Content:
     """The content, by the last name of each leaf.
 
-    Where vectors share it, they are called by the text next to them that names each, else by the structure that each is alone
-    in, as in ``SA.values``; channels that several structures have in common are runs; else a vector is called by all its names.
+    Where vectors share it, they are called by the structure that each is alone in, as in ``SA.values``, unless only a text next
+    to them names a channel; channels that several structures have in common are runs; else a vector is called by all its names.
     """
     found = list(leaves)
     vectors = {path: value for path, value in found if isinstance(value, np.ndarray)}
@@ -56,8 +58,10 @@ def content_of(leaves: Iterable[Leaf]) -> Content:
             next((stated[at] for key in keys if alone and (at := (*path[:-1], key)) in stated), "")
             for keys in (NAMES, UNITS)
         )
-        own = called if called not in names.values() else ""
-        names[path] = path[-1] if repeated[path[-1]] == 1 else own or (path[-2] if alone else ".".join(path))
+        own = path[-2] if alone else ".".join(path)
+        if called and called not in names.values() and simplified(own) not in NAMED:
+            own = called
+        names[path] = path[-1] if repeated[path[-1]] == 1 else own
         if unit:
             units[names[path]] = unit
     return Content(
