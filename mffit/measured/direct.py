@@ -201,9 +201,7 @@ def _at_load(
 ) -> _AtLoad:
     """The result at one load, with eps_gamma if all its inputs were measured; ``stiffnesses`` are those of all loads."""
     rig = evidence.rig
-    if (
-        evidence.skew is None
-    ):  # otherwise the mean of camber sweeps in both directions holds at true zero sideslip
+    if evidence.skew is None:  # the mean of camber sweeps in both directions holds at true zero sideslip
         slopes = _at_true_sideslip(evidence, group, slopes)
     C_alpha = slopes.C_alpha
     assumed = assumed_stiffness(evidence, group, C_alpha)
@@ -214,9 +212,20 @@ def _at_load(
     if rig is None and not slopes.exists:
         return _AtLoad(None)
     found = found and found.calibrated(factors.F_phit)
-    numbers = _numbers(evidence, group, slopes, found)
-    fields: dict[str, Any] = {} if found is None else _of_zeros(evidence, group, found, slopes)
-    epsilon, r_e = None, numbers["r_e"]
+    u_axis = evidence.config.rig.u("alpha_0_deg")
+    C_zero = slope_at(slopes.C_alpha, group.load)
+    split = None if found is None else split_of_zero(found.alpha_M, C_zero, u_axis)
+    r_e = effective_radius_at(group.load, evidence.radii, evidence.base) if rig else None
+    numbers = {
+        "C_alpha": at_true_zero(slopes.C_alpha, slopes.bend, split, u_axis if rig else 0.0),
+        "C_gamma": slopes.C_gamma,
+        "C_phit": found and found.C_phit,
+        "F_phit": found and found.force,
+        "r_e": r_e,
+        "R": rig and rig.R,
+    }
+    fields = {} if found is None else _of_zeros(found, split)
+    epsilon = None
     if found is not None and slopes.C_gamma is not None and r_e is not None:
         epsilon, of_epsilon = _epsilons(evidence, group, slopes, found, r_e)
         fields |= of_epsilon
@@ -242,41 +251,13 @@ def _of_model_alone(after: AfterFit, rows: Sequence[LoadResult]) -> list[LoadRes
     ]
 
 
-def _numbers(
-    evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: Turning | None
-) -> dict[str, UFloat | None]:
-    """The quantities at one load that eps_gamma is made of, by their names in :class:`LoadResult`."""
-    u_axis = evidence.config.rig.u("alpha_0_deg") if evidence.rig else 0.0
-    stiffness = at_true_zero(slopes.C_alpha, slopes.bend, _split(evidence, group, found, slopes), u_axis)
-    return {
-        "C_alpha": stiffness,
-        "C_gamma": slopes.C_gamma,
-        "C_phit": found and found.C_phit,
-        "F_phit": found and found.force,
-        "r_e": effective_radius_at(group.load, evidence.radii, evidence.base) if evidence.rig else None,
-        "R": evidence.rig and evidence.rig.R,
-    }
-
-
-def _split(
-    evidence: DirectEvidence, group: LoadGroup, found: Turning | None, slopes: LoadSlopes
-) -> ZeroSplit | None:
-    """The parts of alpha_M from axis and tyre; None if it was not measured."""
-    if found is None:
-        return None
-    C_alpha = slope_at(slopes.C_alpha, group.load)
-    return split_of_zero(found.alpha_M, C_alpha, evidence.config.rig.u("alpha_0_deg"))
-
-
-def _of_zeros(
-    evidence: DirectEvidence, group: LoadGroup, found: Turning, slopes: LoadSlopes
-) -> dict[str, Any]:
-    """Fields of :class:`LoadResult` from the zeros."""
-    zeros, split = found.zeros, _split(evidence, group, found, slopes)
+def _of_zeros(found: Turning, split: ZeroSplit | None) -> dict[str, Any]:
+    """Fields of :class:`LoadResult` from the zeros; ``split`` is alpha_M, split into axis and tyre."""
+    zeros = found.zeros
     return {
         "alpha_M": quantity_if(found.alpha_M, "rad"),
-        "misalignment": quantity_if(split.misalignment, "rad") if split else None,
-        "ply_steer": quantity_if(split.ply_steer, "rad") if split else None,
+        "misalignment": quantity_if(split and split.misalignment, "rad"),
+        "ply_steer": quantity_if(split and split.ply_steer, "rad"),
         "conicity": quantity_if(found.conicity, "N"),
         "F_forward": float(zeros.forward.nominal_value),
         "F_backward": math.nan if zeros.backward is None else float(zeros.backward.nominal_value),
@@ -307,7 +288,7 @@ def _epsilons(
 
 
 class _AtNominal(NamedTuple):
-    """The result at the nominal load, and what is said of it."""
+    """The result at the nominal load, with notes and warnings."""
 
     row: LoadResult | None
     law: LoadDependence | None = None  #: None if eps_gamma was not measured

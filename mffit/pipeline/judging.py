@@ -57,7 +57,7 @@ def judged(
     )
     most = left.effect is not None and left.effect.explains_most
     effect = most or (left.effect is not None and left.effect.significant)
-    against = sorted(fitted.doubts, key=lambda doubt: -doubt.ratio)
+    against = sorted(fitted.doubts, key=lambda doubt: -doubt.worst.ratio)
     blamed = [] if most else against  # many sweeps look odd that one effect explains
     finished = replace(
         finished,

@@ -90,8 +90,8 @@ def _doubts(points: Points, fitted: FitResult) -> Iterator[LeftOut]:
     for doubt in fitted.doubts:
         looks = f"; it looks like {doubt.looks}" if doubt.looks else ""
         why = (
-            f"doubted, with full weight: {doubt.rms:.3g} {CHANNELS[doubt.channel].unit} from what all other sweeps "
+            f"doubted, with full weight: {doubt.worst.rms:.3g} {CHANNELS[doubt.worst.channel].unit} from what all other sweeps "
             f"predict{looks}"
         )
         rows = np.asarray(doubt.index)
-        yield _entry(points, rows, doubtful_sweep.id, why, channel=doubt.channel, weight=1.0)
+        yield _entry(points, rows, doubtful_sweep.id, why, channel=doubt.worst.channel, weight=1.0)

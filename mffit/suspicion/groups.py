@@ -44,11 +44,10 @@ def _sweeps(points: Points) -> Iterator[Group]:
 
 
 def confirmed_by_others(part: Points, others: Points, columns: Collection[str] = ()) -> bool:
-    """Whether other points were measured at the load, at the camber to either side and at the pressure of a sweep, or at some
-    of these, by their ``columns``.
+    """Whether other points cover the load, the camber to either side and the pressure of a sweep, or those in ``columns``.
 
-    If not, only the formula joins them, and how a tyre goes between two loads, cambers or pressures is no law; but between the
-    outer ones of several levels the readings show it.
+    If not, only the formula predicts the sweep from them, and it may be wrong between two loads, cambers or pressures. Between
+    the outermost of several levels the readings confirm it.
     """
     for name, column, kind in levels.SETTINGS:
         if columns and column not in columns:

@@ -134,21 +134,17 @@ def other_radius(points: Points, config: Config) -> Iterator[Facts]:
     upright = points.select(_rolls_upright(points))
     declared, key = config.tyre.unloaded_radius, "tyre.unloaded_radius"
     rim = (config.tyre.rim_radius or 0.0) / declared
+    least, most = EFFECTIVE_RADIUS_RANGE
     for radius in RADII:
         values = radius.of(upright)
         values = values[np.isfinite(values)]
         ratio = float(np.median(values)) / declared if len(values) else 1.0
-        usual, possible = (
-            least <= ratio <= most
-            for least, most in (EFFECTIVE_RADIUS_RANGE, (rim, constants.LARGEST_RADIUS))
-        )
-        if not (usual and possible):
+        possible = rim <= ratio <= constants.LARGEST_RADIUS
+        if not (possible and least <= ratio <= most):
             judged = "is rare: check" if possible else "no wheel has; correct"
             facts = {"words": radius.words, "radius": ratio * declared, "ratio": ratio, "declared": declared}
             facts |= {"of_column": radius.column, "judged": judged, "asked": possible}
-            yield (
-                facts if possible else {**facts, "file": config.path, "line": config.line_of(key), "key": key}
-            )
+            yield facts | ({} if possible else {"file": config.path, "line": config.line_of(key), "key": key})
 
 
 def _rolls_upright(points: Points) -> np.ndarray:

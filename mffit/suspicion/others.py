@@ -88,24 +88,9 @@ class Doubt(ReadOnlyArrays):
     confirmed: bool = True  #: whether other sweeps were measured at its load, camber and pressure
 
     @property
-    def channel(self) -> str:
-        """The channel with the worst error."""
-        return self.errors[0].channel
-
-    @property
-    def rms(self) -> float:
-        """Rms error of the worst channel [N] or [Nm]."""
-        return self.errors[0].rms
-
-    @property
-    def ratio(self) -> float:
-        """Error of the worst channel in units of its standard uncertainty."""
-        return self.errors[0].ratio
-
-    @property
-    def share(self) -> float:
-        """Error of the worst channel as a share of the channel's usual size at this load."""
-        return self.errors[0].share
+    def worst(self) -> Error:
+        """The error with the largest ratio."""
+        return self.errors[0]
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -124,10 +109,13 @@ class Doubt(ReadOnlyArrays):
     def sentence(self) -> str:
         """The warning about the sweep."""
         explained = f"; it looks like {self.looks}" if self.looks else ""
-        return doubtful_sweep.said({"sweep": self.sweep, "explained": explained, **self.errors[0].facts})
+        return doubtful_sweep.said({"sweep": self.sweep, "explained": explained, **self.worst.facts})
 
 
-keys(Doubt, "sweep file channel rms ratio share looks_like=looks?")
+keys(
+    Doubt,
+    "sweep file channel=worst.channel rms=worst.rms ratio=worst.ratio share=worst.share looks_like=looks?",
+)
 
 
 def after_the_fit(campaign: JudgedSweeps) -> tuple[Doubt, ...]:
@@ -212,7 +200,7 @@ def doubtful_sweep(seen: Sequence[Doubt]) -> Iterator[Doubt]:
     Single conditions of a sweep are named only if the sweep as a whole is not.
     """
     named: list[set[int]] = []
-    for doubt in sorted(seen, key=lambda d: (not d.whole, -d.ratio)):
+    for doubt in sorted(seen, key=lambda d: (not d.whole, -d.worst.ratio)):
         if doubt.channels and not any(set(doubt.index) <= rows for rows in named):
             named.append(set(doubt.index))
             yield doubt

@@ -53,9 +53,8 @@ class Mistake:
     def certain(self, undone: Points, others: Points, *, by_formula: bool) -> bool:
         """Whether no formula of a sound tyre is as wrong as this mistake.
 
-        A reading that is out by a small factor can be the tyre's own at a load, camber or pressure of which ``others`` have no
-        readings, and so can any but a large factor ``by_formula``, which is only fitted to them. A wrong setting is certain if
-        others confirm the true one.
+        At a load, camber or pressure that ``others`` do not cover, a tyre may differ by a small factor from what they show, and
+        by any but a large factor from a prediction ``by_formula``. A wrong setting is certain if others confirm the true one.
         """
         if self.factor > 1.0 and any(self.column == column for _, column, _ in levels.SETTINGS):
             return confirmed_by_others(undone, others, {self.column})
@@ -177,7 +176,7 @@ def certain_mistakes(
 def moved(points: Points, errors: Errors, simulation: Simulation, changed: Points) -> dict[str, np.ndarray]:
     """By channel, the errors of the points if they are read as ``changed``, to first order.
 
-    Channels of which ``changed`` lacks readings are left out.
+    Channels without readings in ``changed`` are left out.
     """
     here, there = simulation.readings(points, errors), simulation.readings(changed, errors)
     out = {}

@@ -137,7 +137,7 @@ def _line(x: np.ndarray, at: np.ndarray, behind: np.ndarray) -> np.ndarray:
 TURNING = Rule(
     id="turning-sweep",
     when=When.AFTER,
-    looks_at="Residuals beside the turns of moving sweeps, foretold from their legs, against those elsewhere in the legs",
+    looks_at="Residuals beside the turns of moving sweeps, extrapolated from their legs, against those elsewhere in the legs",
     outcome=Outcome.WARNED,
     sentence="{channel} is off the model by {off:.3g} {unit} rms where sweeps turn back ({number} readings), and by {usual:.3g} "
     "{unit} elsewhere: the rig accelerates there, so that its inertia is in what it reads; these readings count by their own "

@@ -74,8 +74,13 @@ class Rule:
 
 
 def rule(**told: Any) -> Callable[[Find], Rule]:
-    """Decorator that turns a finder into a rule; the first line of the finder's docstring becomes ``looks_at``."""
-    return lambda find: Rule(looks_at=(find.__doc__ or "").partition("\n")[0].rstrip("."), find=find, **told)
+    """Decorator that turns a finder into a rule; the first paragraph of the finder's docstring becomes ``looks_at``."""
+
+    def of(find: Find) -> Rule:
+        first = (find.__doc__ or "").partition("\n\n")[0]
+        return Rule(looks_at=" ".join(first.split()).rstrip("."), find=find, **told)
+
+    return of
 
 
 def each_file(find: Find) -> Find:

@@ -132,11 +132,8 @@ def _steep(part: Points, config: Config) -> Iterator[Unusual]:
             found = slope(part, part.Fy, angle, free & alone & (part.direction == way), STILL_IN_RADIANS)
             if found.sign and abs(found.value) > steepest:
                 largest = np.degrees(np.max(np.abs(getattr(part, angle))))
-                said = (
-                    f"reaches only {largest:.3g} deg, over which the side force changes by {abs(found.value):.0f} times the load "
-                    "per radian"
-                )
-                yield Unusual(f"{angle}_deg", said)
+                change = f"yet the side force changes by {abs(found.value):.0f} times the load per radian"
+                yield Unusual(f"{angle}_deg", f"spans only {largest:.3g} deg, {change}")
 
 
 def _reached(values: np.ndarray) -> float:

@@ -248,7 +248,7 @@ def above_noise(fit: FinishedFit) -> Iterator[Facts]:
 @of_model(
     id="sweep-above-noise",
     outcome=Outcome.DISTRUSTED,
-    sentence="the model misses {channel} of {sweep} by {ratio:.1f} times {noise}, which chance does not explain{others}{cause}; "
+    sentence="the model misses {channel} of {sweep} by {ratio:.1f} times {noise}, beyond chance{others}{cause}; "
     "check this sweep or repeat it",
 )
 def sweep_above_noise(fit: FinishedFit) -> Iterator[Facts]:
@@ -386,7 +386,7 @@ def drift_between_sweeps(measured: JudgedMeasurement) -> Iterator[Facts]:
     id="sweeps-of-one-way",
     outcome=Outcome.WARNED,
     sentence="all moving sweeps of sideslip go one way, so that no reading shows by how much the force lags behind the angle: a "
-    "usual tyre, with a relaxation length of {length:.2f} m, shifts them by {angle:.2f} deg{force}; the uncertainty holds that; "
+    "usual tyre, with a relaxation length of {length:.2f} m, shifts them by {angle:.2f} deg{force}; the uncertainty includes it; "
     "sweep the other way, too, or slower over the road",
 )
 def sweeps_of_one_way(measured: JudgedMeasurement) -> Iterator[Facts]:
@@ -488,10 +488,10 @@ def effect_left(fit: FinishedFit) -> Iterator[Facts]:
 @of_model(
     id="structure-in-the-residuals",
     outcome=Outcome.WARNED,
-    sentence="{channel} leaves more than noise: what the fit misses of it changes smoothly with {over}, {size:.3g} {unit} rms",
+    sentence="the residuals of {channel} are more than noise: they change smoothly with {over}, by {size:.3g} {unit} rms",
 )
 def structure_left(fit: FinishedFit) -> Iterator[Facts]:
-    """Evidence of model error, where the noise is stated and the model error is no more than it."""
+    """Evidence of model error, where the noise is stated and the model error does not exceed it."""
     from mffit.linearised.inputs import word_of
 
     for name, channel in fit.linear.channels.items() if fit.linear and _noise_is_stated(fit) else ():
@@ -532,7 +532,7 @@ def judge(found: JudgedMeasurement) -> Trust:
         return Trust(said(*rules, doubtful=False), said(*rules, doubtful=True))
     reasons = said(*OF_TRUST, doubtful=False)
     doubts = said(*OF_TRUST, doubtful=True)
-    # What one effect explains is no limit of the formula.
+    # A misfit that one effect explains is not due to the formula.
     limited = tuple(name for name in found.used if found.beyond_scatter(name) and not found.cause_is_most)
     return Trust(reasons, doubts, over_noise=found.over_noise, limited=limited)
 

@@ -89,7 +89,7 @@ def test_a_file_with_a_zero_offset_is_doubted_and_the_offset_named(tmp_path):
     campaign.tables["sideslip_1400N_20deg.csv"]["Fy_N"] += 120.0
     result = campaign.build()
     (doubt,) = result.fit.doubts
-    assert (doubt.file, doubt.channel) == ("sideslip_1400N_20deg.csv", "Fy")
+    assert (doubt.file, doubt.worst.channel) == ("sideslip_1400N_20deg.csv", "Fy")
     assert doubt.looks.startswith("a zero offset of +1")
     assert any("sideslip_1400N_20deg" in sentence for sentence in result.warnings)
 

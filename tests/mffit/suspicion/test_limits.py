@@ -295,7 +295,7 @@ def sentence(rule: str, points: Points) -> str:
         (
             "unusual-file",
             tyre(Fy=-1500.0 * 125.0 * ALPHA),
-            "reaches only 6 deg, over which the side force changes by 125 times the load per radian",
+            "spans only 6 deg, yet the side force changes by 125 times the load per radian",
         ),
         (
             "unusual-file",
