@@ -22,6 +22,7 @@ from tir.record import TyreRecord
 from tir.targets import FITTYPS, UNKNOWN_DIGIT, fittyps_text, known_target, use_mode_words
 from tir.tyre import Tyre
 from tir.unit_check import in_fitting_units
+from tir.units import KINDS
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,10 +158,10 @@ def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
 
 
 def _with_line(problem: Problem, tyre: Tyre) -> Problem:
-    """The problem with the line of the file that holds its key."""
+    """The problem with the line of the file that holds its key, or its unit."""
     lines = () if problem.line is not None or tyre.document is None else tyre.document.entries
     for line in lines:
-        if line.key == problem.name and line.section != "UNITS":
+        if line.key == problem.name and (line.section == "UNITS") == (problem.name in KINDS):
             return replace(problem, sentence=f"line {line.number}: {problem.sentence}", line=line.number)
     return problem
 
@@ -229,7 +230,8 @@ def _ranges(tyre: Tyre) -> Iterator[Problem]:
             f"CAMMAX is {np.degrees(tyre['CAMMAX']):.1f} deg on a motorcycle tyre: simulations limit camber to it silently",
         )
     low, high = sorted(("INFLPRES", "NOMPRES"), key=lambda name: float(tyre[name]))
-    if 0.0 < tyre[low] * float(constants.PRESSURES_APART) < tyre[high]:
+    smallest, largest = constants.PRESSURE_RANGE
+    if 0.0 < tyre[low] < smallest < tyre[high] or tyre[low] < largest < tyre[high]:
         yield _error(
             low,
             f"{high} {tyre[high]:g} Pa is {tyre[high] / tyre[low]:.3g} times {low} {tyre[low]:g} Pa: one is in another unit; "

@@ -55,11 +55,6 @@ LENGTH_RANGE = Series(
 PRESSURE_RANGE = Series(
     (5e3, 1e7), "Pa", "Tyres run within; a smaller number is in kPa or bar; My takes no less."
 )
-PRESSURES_APART = Real(
-    10.0,
-    "-",
-    "Inflation over nominal pressure, or the reverse, that no tyre is run at; one is in another unit.",
-)
 LARGEST_ANGLE = Real(
     1.7, "rad", "Sideslip and camber stay below a right angle; a larger limit is in degrees."
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tir.codegen.program import Switches, trace
+from tir.codegen.program import Switches, parameters_of
 from tir.constants import LONGEST_READABLE_LINE
 from tir.document import Document, FileLine, number_of, unquoted
 from tir.equations.forces import Forces
@@ -69,7 +69,7 @@ def _remedy(target: Target) -> str:
 
 def _missing(names: set[str], turn_slip: bool) -> Iterator[Problem]:
     """Missing keys, for a program that needs complete files: an error for keys of the forces, else a warning."""
-    forces = set(trace(Switches(turn_slip, limits=True), Forces._fields).parameters)
+    forces = parameters_of(Forces._fields, Switches(turn_slip, limits=True))
     for level, those, why in (
         ("error", names & forces, "the forces need every key"),
         ("warning", names - forces, "the forces do not need them, but the program may require every key"),

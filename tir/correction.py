@@ -82,7 +82,7 @@ class Correction(ReadOnlyArrays):
     path: float = field(compare=False)  #: curvature of the path of the measurement [1/m]
     lowest: float = field(compare=False)  #: load below which the model error falls with the load [N]
 
-    def added(self, forces: Forces[Any], inputs: Sequence[Any], *, limits: bool = False) -> Forces[Any]:
+    def added(self, forces: Forces[Any], inputs: Sequence[Any], *, limits: bool) -> Forces[Any]:
         """Forces of the formula plus the model error, at the ``inputs`` of the call, in the order of ``INPUTS``.
 
         With ``limits`` the inputs are held to the file's ranges; then the model error fades outside of the grid only towards a

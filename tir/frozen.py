@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from operator import is_
 from typing import Any
 
 import numpy as np
@@ -33,12 +34,8 @@ def read_only(value: Any) -> Any:
         return value
     if type(value) is tuple:
         kept = tuple(map(read_only, value))
-        return value if all(map(_same, kept, value)) else kept
+        return value if all(map(is_, kept, value)) else kept
     if type(value) is dict:
         found = {key: read_only(item) for key, item in value.items()}
-        return value if all(map(_same, found.values(), value.values())) else found
+        return value if all(map(is_, found.values(), value.values())) else found
     return value
-
-
-def _same(one: object, other: object) -> bool:
-    return one is other

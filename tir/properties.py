@@ -6,13 +6,12 @@ import math
 import re
 from collections.abc import Collection, Mapping, Sequence
 from difflib import get_close_matches
-from functools import cache
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from tir.codegen.program import Switches, trace
+from tir.codegen.program import Switches, parameters_of
 from tir.defaults import completed
 from tir.document import AS_TEXT, NUMBER, Document, FileLine, number_of, unquoted
 from tir.equations.forces import Forces, State
@@ -31,6 +30,10 @@ LONG_NAME, LIKENESS = 6, 0.85
 """Length from which a name without a number is compared with others, and the likeness that counts as a misspelling."""
 LARGEST = float(np.finfo(np.float32).max)
 """Largest size of a value: simulation programs have no larger one in single precision, and squares of it are finite here."""
+DEFAULTS_OF_A_CALL = {"LONGVL", "INFLPRES", "FITTYP"}
+"""Values that a call takes where it gives none, and the formula."""
+OF_SLIP = tuple(name for name in Forces._fields if name not in ("Fz", "My"))
+"""Forces and moments of slip."""
 ESSENTIAL = ("UNLOADED_RADIUS", "FNOMIN")
 OPTION = "; mffit check, show, compare and convert take --unloaded-radius"
 ESSENTIAL_COEFFICIENTS = ("PCY1", "PDY1", "PKY1")
@@ -181,7 +184,8 @@ def value_of(
         return None
     said = f'{line.key} is "{text}", but a number was expected' if number is None else ""
     said = said or f"{line.key} is {text}, which no formula can use"
-    if row.name in BY_NAME and row.name not in _needed():
+    results = parameters_of(Forces._fields + State._fields, Switches(True, limits=True))
+    if row.name in BY_NAME and row.name not in results | DEFAULTS_OF_A_CALL:
         problems.append(_warning(f"{said}; no force needs it, so its default is taken", line))
         return None
     remedy = ": give a number"
@@ -194,13 +198,6 @@ def value_of(
     if text.endswith(";") and number_of(text[:-1].strip()) is not None:
         remedy = ": leave the semicolon out"
     raise TirError(f"{said}{remedy}", path=document.path, line=line.number, name=line.key)
-
-
-@cache
-def _needed() -> frozenset[str]:
-    """Parameters that any force or other result depends on."""
-    program = trace(Switches(True, False, True), Forces._fields + State._fields)
-    return frozenset(program.parameters) | {"LONGVL", "INFLPRES", "FITTYP"}
 
 
 OTHER_FORMULAS: Mapping[str, str] = {
@@ -343,18 +340,11 @@ def _about_missing(complete: Mapping[str, Any], given: Collection[str], stated: 
 
 def _defaults_in_words(missing: Sequence[Parameter], complete: Mapping[str, Any]) -> list[str]:
     """Missing keys, first those whose defaults contribute to a force, with the values taken."""
-    acting = _acting(asks_for_turn_slip(complete))
+    acting = parameters_of(OF_SLIP, Switches(asks_for_turn_slip(complete))) | {"INFLPRES"}
     neutral = {row.name for row in missing if complete[row.name] == (1.0 if row.scaling else 0.0)}
     first = [row for row in missing if row.name in acting and row.name not in neutral]
     words = [f"{row.name} = {complete[row.name]:g}{f' {row.unit}' * (row.unit != '-')}" for row in first]
     return [*words, *(row.name for row in missing if row not in first)]
-
-
-@cache
-def _acting(turn_slip: bool) -> frozenset[str]:
-    """Parameters that slip forces and moments depend on."""
-    slipping = tuple(name for name in Forces._fields if name not in ("Fz", "My"))
-    return frozenset(trace(Switches(turn_slip), slipping).parameters) | {"INFLPRES"}
 
 
 def _about_unknown(extra: Mapping[str, str], given: Collection[str]) -> list[Problem]:

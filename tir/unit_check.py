@@ -31,8 +31,8 @@ def in_fitting_units(tyre: AnyTyre) -> tuple[AnyTyre, list[Problem]]:
     for kind, search in (("LENGTH", _length), ("ANGLE", _angle)):
         found = search(tyre, words) if kind in stated else None
         if found is not None:
-            problem, words = found[0], words | {kind: found[1]}
-            problems.append(_in_file(tyre, problem))
+            problems.append(found[0])
+            words = words | {kind: found[1]}
             tyre = _reread(tyre, words | {kind: stated[kind]}, words)
     return tyre, problems
 
@@ -79,11 +79,3 @@ def _reread(tyre: AnyTyre, words: Mapping[str, str], other: Mapping[str, str]) -
         if not isinstance(value, str):
             values[name] = value * factor(unit, other) / factor(unit, words)
     return replace(tyre, values=MappingProxyType(completed(values)))
-
-
-def _in_file(tyre: TyreRecord, problem: Problem) -> Problem:
-    """The problem with the line of [UNITS] that it is about."""
-    for line in () if tyre.document is None else tyre.document.entries:
-        if line.section == "UNITS" and line.key == problem.name:
-            return replace(problem, sentence=f"line {line.number}: {problem.sentence}", line=line.number)
-    return problem

@@ -5,29 +5,30 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-KINDS: dict[str, dict[str, float]] = {
+WORDS: dict[str, dict[float, str]] = {
     "LENGTH": {
-        "meter": 1.0, "metre": 1.0, "m": 1.0, "mm": 1e-3, "millimeter": 1e-3, "cm": 1e-2, "centimeter": 1e-2, "km": 1e3,
-        "um": 1e-6, "inch": 0.0254, "in": 0.0254, "foot": 0.3048, "feet": 0.3048, "ft": 0.3048,
+        1.0: "meter metre m", 1e-2: "cm centimeter", 1e-3: "mm millimeter", 1e-6: "um", 1e3: "km",
+        0.0254: "inch in", 0.3048: "foot feet ft",
     },
     "FORCE": {
-        "newton": 1.0, "n": 1.0, "kn": 1e3, "knewton": 1e3, "kilonewton": 1e3, "mn": 1e-3, "kg_force": 9.80665,
-        "kgf": 9.80665, "pound_force": 4.4482216152605, "lbf": 4.4482216152605, "dyne": 1e-5,
+        1.0: "newton n", 1e3: "kn knewton kilonewton", 1e-3: "mn", 9.80665: "kg_force kgf", 4.4482216152605: "pound_force lbf",
+        1e-5: "dyne",
     },
-    "ANGLE": {"radians": 1.0, "radian": 1.0, "rad": 1.0, **dict.fromkeys(("degrees", "degree", "deg"), math.pi / 180)},
+    "ANGLE": {1.0: "radians radian rad", math.radians(1.0): "degrees degree deg"},
     "MASS": {
-        "kg": 1.0, "kilogram": 1.0, "g": 1e-3, "gram": 1e-3, "mg": 1e-6, "ton": 1e3, "tonne": 1e3, "slug": 14.593902937,
-        "pound_mass": 0.45359237, "lbm": 0.45359237,
+        1.0: "kg kilogram", 1e-3: "g gram", 1e-6: "mg", 1e3: "ton tonne", 14.593902937: "slug", 0.45359237: "pound_mass lbm",
     },
-    "TIME": {
-        "second": 1.0, "seconds": 1.0, "sec": 1.0, "s": 1.0, "millisecond": 1e-3, "ms": 1e-3, "minute": 60.0, "hour": 3600.0,
-    },
+    "TIME": {1.0: "second seconds sec s", 1e-3: "millisecond ms", 60.0: "minute", 3600.0: "hour"},
     "PRESSURE": {
-        "pascal": 1.0, "pa": 1.0, "kpascal": 1e3, "kpa": 1e3, "kilopascal": 1e3, "mpascal": 1e6, "mpa": 1e6, "megapascal": 1e6,
-        "bar": 1e5, "psi": 6894.757293168361,
+        1.0: "pascal pa", 1e3: "kpascal kpa kilopascal", 1e6: "mpascal mpa megapascal", 1e5: "bar", 6894.757293168361: "psi",
     },
 }  # fmt: skip
-"""By kind of quantity, the SI value of each word that a file may have for its unit."""
+"""By kind of quantity and SI value, the words that a file may have for its unit."""
+KINDS = {
+    kind: {word: value for value, words in values.items() for word in words.split()}
+    for kind, values in WORDS.items()
+}
+"""By kind of quantity, the SI value of each word."""
 SI = {"LENGTH": "meter", "FORCE": "newton", "ANGLE": "radians", "MASS": "kg", "TIME": "second"}
 
 PRODUCTS: dict[str, tuple[tuple[str, int], ...]] = {

@@ -66,7 +66,7 @@ def write_table(
     ranges : lowest and highest value of ``Fz_N``, ``alpha_deg``, ``gamma_deg``, ``kappa``, within those of the file; default:
         those of the file, to 60 deg of camber and 30 deg of sideslip
     progress : called with a sentence at each step
-    switches : ``turn_slip``: whether spin by camber acts; ``star``, ``limits``; as in :func:`tir.export_c`
+    switches : ``turn_slip``, ``star``, ``limits``, as in :func:`tir.export_c`; spin is that of camber
 
     Returns
     -------
@@ -75,31 +75,25 @@ def write_table(
 
     Raises
     ------
-    InputError
-        A range or a form is unusable, a force is not a number, or the folder cannot be written to.
-    TirError
-        The file cannot be read.
+    InputError, TirError
+        A range or a form is unusable, a force is not a number, the file cannot be read, or the folder cannot be written to.
     """
     path, out = Path(path), Path(out)
-    _refuse_unusable(form, error)
+    if form not in FORMS:
+        raise InputError(f"there are no tables for {form!r}, only for {', '.join(FORMS)}")
+    if not 0.0 < error < 1.0:
+        raise InputError(f"an error of {100.0 * error:g} % is not between 0 and 100 %", key="--error")
     tyre = tir.read(path)
     chosen = tyre.switches(**switches)
     tables, warnings = _tables(partial(_force, tyre, chosen), _ranges(tyre, path, ranges), error, progress)
     wrong = [table.heading for table in tables if not np.isfinite(table.grid.largest)]
     if wrong:
         raise InputError(f"{wrong[0]} is not a number everywhere in the ranges; see mffit check", file=path)
-    at = f"straight path, {tyre['LONGVL']:g} m/s, {tyre['INFLPRES'] / 1e3:g} kPa"
-    about = f"{path.name}, {words(chosen)}, {at}; ISO-W axes, degrees, N, Nm" + f"; {NO_FX}" * lacks_fx(tyre)
+    at = f"straight path, {tyre['LONGVL']:g} m/s, {tyre['INFLPRES'] / 1e3:g} kPa; ISO-W axes, degrees, N, Nm"
+    about = f"{path.name}, {words(chosen)}, {at}" + f"; {NO_FX}" * lacks_fx(tyre)
     with output_folder(out, by="export", protected=[path]) as folder:
         names = FORMS[form](folder, stem(path, tyre, chosen), about, tables)
     return LookupTables([out / name for name in names], tables, warnings)
-
-
-def _refuse_unusable(form: str, error: float) -> None:
-    if form not in FORMS:
-        raise InputError(f"there are no tables for {form!r}, only for {', '.join(FORMS)}")
-    if not 0.0 < error < 1.0:
-        raise InputError(f"an error of {100.0 * error:g} % is not between 0 and 100 %", key="--error")
 
 
 def _force(tyre: tir.Tyre, switches: Switches, channel: str, **at: Any) -> Any:

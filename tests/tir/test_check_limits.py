@@ -41,6 +41,12 @@ LIMITS = [
     ("it looks like millimetres or inches", {"WIDTH": 1.51}, {"WIDTH": 1.49}),
     ("it looks like kPa or bar", {"NOMPRES": 4.9e3}, {"NOMPRES": 5.1e3}),
     ("no tyre holds that pressure", {"NOMPRES": 1.01e7}, {"NOMPRES": 0.99e7}),
+    ("one is in another unit", {"NOMPRES": 4.9e3, "INFLPRES": 5.1e3}, {"NOMPRES": 4.9e3, "INFLPRES": 4.9e3}),
+    (
+        "one is in another unit",
+        {"NOMPRES": 0.99e7, "INFLPRES": 1.01e7},
+        {"NOMPRES": 5.1e3, "INFLPRES": 0.99e7},
+    ),
     ("ALPMAX is 1.71 rad: it looks like degrees", {"ALPMAX": 1.71}, {"ALPMAX": 1.69}),
     ("CAMMIN is -1.71 rad: it looks like degrees", {"CAMMIN": -1.71}, {"CAMMIN": -1.69}),
     ("MASS is -0.1 kg: it must not be negative", {"MASS": -0.1}, {"MASS": 0.0}),

@@ -590,6 +590,17 @@ class TestGraph:
         assert constant.level == PARAMETER
         assert rest is x * y
 
+    def test_a_number_times_its_sign_alone_is_an_absolute_value(self, graph):
+        x, y = graph.symbol("x", INPUT), graph.symbol("y", INPUT)
+        assert (x * np.where(x < 0.0, -1.0, 1.0)).operation == "absolute"
+        for other in (
+            x * np.where(x < 0.0, -1.0, 0.0),
+            x * np.where(x < 0.0, 1.0, -1.0),
+            x * np.where(x < 1.0, -1.0, 1.0),
+            y * np.where(x < 0.0, -1.0, 1.0),
+        ):
+            assert other.operation == "multiply"
+
     def test_an_unsupported_operation_is_refused(self, graph):
         with pytest.raises(TypeError):
             np.sinh(graph.symbol("x", INPUT))
@@ -602,7 +613,7 @@ class TestGraph:
     def test_constants_of_a_tyre_with_infinite_values_are_numpys(self, tyre):
         """Where Python's sine raises."""
         values = {**calls._values(tyre, Switches(), calls.FORCES), "QDRP1": math.inf}
-        prepare, _ = single._compiled(Switches(True), Forces._fields)
+        prepare, _ = single.compiled_for(Switches(True), Forces._fields)
         with pytest.raises(ValueError, match="domain"):
             prepare(values, **single.MATH)
         assert any(math.isnan(x) for x in single.constants(prepare, values))

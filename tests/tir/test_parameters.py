@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import tir
+from tir import units
 from tir.parameters import BY_NAME, SECTIONS, TABLE, Parameter
 
 PACKAGE = Path(tir.__file__).parent
@@ -161,3 +162,46 @@ def test_conicity_changes_sign_with_the_tyre_turned_on_its_rim():
         assert tyre(1500.0, Vx=8.0).Fy != 0.0
         same = tyre(1500.0, Vx=-8.0).Fy == pytest.approx(tyre(1500.0, Vx=8.0).Fy)
         assert same == BY_NAME[name].conicity
+
+
+def test_every_unit_of_a_file_has_the_value_of_its_definition():
+    """SI prefixes, and the international yard and pound of 1959 with the standard acceleration of gravity."""
+    inch, pound, gravity = 25.4e-3, 0.45359237, 9.80665
+    foot, force = 12.0 * inch, pound * gravity
+    defined = {
+        "LENGTH": {"inch": inch, "in": inch} | dict.fromkeys(("foot", "feet", "ft"), foot),
+        "FORCE": {
+            "kg_force": gravity,
+            "kgf": gravity,
+            "pound_force": force,
+            "lbf": force,
+            "dyne": 1e-3 * 1e-2,
+        },
+        "ANGLE": dict.fromkeys(("degrees", "degree", "deg"), np.pi / 180.0),
+        "MASS": {"pound_mass": pound, "lbm": pound, "slug": force / foot, "ton": 1e3, "tonne": 1e3}
+        | {"kg": 1.0, "kilogram": 1.0, "g": 1e-3, "gram": 1e-3, "mg": 1e-6},
+        "TIME": {"minute": 60.0, "hour": 60.0 * 60.0},
+        "PRESSURE": {"bar": 1e5, "psi": force / inch**2},
+    }
+    plain = {
+        "LENGTH": ("meter", "metre", "m"), "FORCE": ("newton", "n"), "ANGLE": ("radians", "radian", "rad"),
+        "TIME": ("second", "seconds", "sec", "s"), "PRESSURE": ("pascal", "pa"),
+    }  # fmt: skip
+    prefixes = {
+        "k": 1e3,
+        "kilo": 1e3,
+        "c": 1e-2,
+        "centi": 1e-2,
+        "milli": 1e-3,
+        "m": 1e-3,
+        "u": 1e-6,
+        "mega": 1e6,
+        "": 1.0,
+    }
+    for kind, words in units.KINDS.items():
+        for word, value in words.items():
+            known = defined[kind].get(word)
+            if known is None:
+                known = {before + one: x for before, x in prefixes.items() for one in plain[kind]}[word]
+                known = 1e6 if kind == "PRESSURE" and word[0] == "m" else known  # no file states millipascal
+            assert value == pytest.approx(known, rel=1e-9), word

@@ -98,12 +98,13 @@ def refuse_zero_divisors(p: Any, switches: Switches, outputs: Sequence[str]) -> 
 
 def that_need(name: str, switches: Switches, outputs: Sequence[str]) -> list[str]:
     """The outputs that depend on a parameter."""
-    return [output for output in outputs if name in _parameters_of(output, switches)]
+    return [output for output in outputs if name in parameters_of((output,), switches)]
 
 
 @cache
-def _parameters_of(output: str, switches: Switches) -> tuple[str, ...]:
-    return trace(switches, (output,)).parameters
+def parameters_of(outputs: tuple[str, ...], switches: Switches) -> frozenset[str]:
+    """Names of the parameters that the outputs depend on."""
+    return frozenset(trace(switches, outputs).parameters)
 
 
 def needed(results: Collection[Any]) -> list[Node]:

@@ -20,7 +20,8 @@ NUMPY = {name: getattr(np, name) for name in FUNCTIONS}
 
 
 @cache
-def _compiled(switches: Switches, outputs: tuple[str, ...]) -> tuple[Any, Any]:
+def compiled_for(switches: Switches, outputs: tuple[str, ...]) -> tuple[Any, Any]:
+    """The functions of :func:`compiled` for any tyre."""
     return compiled(trace(switches, outputs))
 
 
@@ -29,12 +30,6 @@ def compiled(program: Program, inputs: Sequence[str] = INPUTS) -> tuple[Any, Any
     namespace = dict(MATH)
     exec(preparation(program) + conditions(program, inputs), namespace)
     return namespace["prepare"], namespace["run"]
-
-
-def preparation_of(switches: Switches, outputs: tuple[str, ...]) -> Callable[..., tuple[float, ...]]:
-    """See :func:`tir.codegen.source.preparation`."""
-    found: Callable[..., tuple[float, ...]] = _compiled(switches, outputs)[0]
-    return found
 
 
 def constants(prepare: Callable[..., tuple[float, ...]], values: Mapping[str, float]) -> tuple[float, ...]:
@@ -52,7 +47,7 @@ def run_of(values: Mapping[str, float], switches: Switches, outputs: tuple[str, 
 
     Raises ArithmeticError or ValueError where numpy gives NaN or infinity.
     """
-    prepare, run = _compiled(switches, outputs)
+    prepare, run = compiled_for(switches, outputs)
     return with_defaults(run, constants(prepare, values))
 
 

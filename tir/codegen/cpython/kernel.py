@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 from tir.codegen.constants import VECTOR_LANES
 from tir.codegen.cpython import SCALARS
 from tir.codegen.program import Switches, trace
-from tir.codegen.single import constants, preparation_of
+from tir.codegen.single import compiled_for, constants
 from tir.equations.forces import Forces
 from tir.errors import TirError
 
@@ -116,7 +116,7 @@ def load(kind: str, switches: Switches) -> Kernel:
     engine.add_object_file(binding.ObjectFileRef.from_data(code))
     engine.finalize_object()
     definition = _Definition(kind.encode(), engine.get_function_address(kind), FASTCALL, None)
-    return Kernel(definition, engine, preparation_of(switches, Forces._fields))
+    return Kernel(definition, engine, compiled_for(switches, Forces._fields)[0])
 
 
 def _machine() -> Any:
