@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from mffit.diagnosis.bumps import Bump, BumpScan, bump_scan
+from mffit.diagnosis.bumps import Bump, BumpScan
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.imitation import is_no_imitation
 from mffit.diagnosis.inexact import Inexactness
@@ -155,5 +155,5 @@ class Explanation(ReadOnlyArrays):
         return max(self._bumps_in(problem).best(own).gain, 0.0)
 
     def _bumps_in(self, problem: DiagnosisProblem) -> BumpScan:
-        """The bumps of another covariance."""
-        return self.bumps if problem is self.problem else bump_scan(problem.points, problem.noise)
+        """The bumps in another covariance of the same readings."""
+        return self.bumps if problem is self.problem else replace(self.bumps, noise=problem.noise)

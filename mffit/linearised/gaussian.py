@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
-from scipy.linalg.lapack import dtrtri
+from scipy.linalg.lapack import dpotrf, dpotrs, dtrtri
 
 from tir.frozen import ReadOnlyArrays
 
@@ -30,15 +29,15 @@ class Informed(ReadOnlyArrays):
         ``rounding`` is added to the diagonal. It is increased until the information is positive definite, because rounding of a
         difference of large sums can make eigenvalues negative.
         """
-        ones = np.eye(len(pull))
         while True:
-            try:
-                factor = cho_factor((1.0 + rounding) * ones + information, lower=True, check_finite=False)[0]
-                return cls(np.tril(factor), pull)
-            except np.linalg.LinAlgError:
-                if not np.all(np.isfinite(information)):
-                    raise
-                rounding = 10.0 * rounding or np.finfo(float).eps * float(np.max(np.diag(information)))
+            precision = information.copy()
+            precision.flat[:: len(pull) + 1] += 1.0 + rounding
+            factor, failed = dpotrf(precision, lower=1, clean=1) if len(pull) else (precision, 0)
+            if not failed:
+                return cls(factor, pull)
+            if not np.all(np.isfinite(information)):
+                raise np.linalg.LinAlgError("the information is not finite")
+            rounding = 10.0 * rounding or np.finfo(float).eps * float(np.max(np.diag(information)))
 
     @classmethod
     def of_rows(cls, columns: np.ndarray, residual: np.ndarray) -> Informed:
@@ -54,7 +53,7 @@ class Informed(ReadOnlyArrays):
     @cached_property
     def mean(self) -> np.ndarray:
         """Posterior mean (k,)."""
-        return np.asarray(cho_solve((self.factor, True), self.pull, check_finite=False))
+        return np.asarray(dpotrs(self.factor, self.pull, lower=1)[0]) if len(self.pull) else self.pull
 
     @cached_property
     def root(self) -> np.ndarray:
