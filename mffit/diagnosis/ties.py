@@ -12,6 +12,8 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.points import Points, main_pressure
 
+LEAN = f"{CAMBER_OF_SLOPES:g} deg camber"
+
 
 @dataclass(frozen=True, slots=True)
 class Separation:
@@ -47,52 +49,60 @@ def candidate_runs(points: Points) -> list[tuple[str, Points]]:
     load, loads = float(np.median(main.Fz)), np.unique(np.round(main.Fz, -1))
     lower, higher = np.array(constants.TIE_RUN_OTHER_LOADS) * (loads.min(), loads.max())
     slip = _line(main, load, "alpha", float(np.max(np.abs(main.alpha))))
-    camber = _line(main, load, "gamma", constants.TIE_RUN_CAMBER.rad)
-    sideslip, lean = "a sideslip sweep at", f"{CAMBER_OF_SLOPES:g} deg camber"
-    cambers, at = f"a camber sweep to {constants.TIE_RUN_CAMBER:g} deg at", f"at {load:.0f} N"
+    sweep = "a sideslip sweep at"
     warmer, later = constants.TIE_RUN_WARMER, constants.TIE_RUN_LATER
-    pressure, fast, wide = constants.TIE_RUN_LOW_PRESSURE, constants.TIE_RUN_FAST, constants.TIE_RUN_WIDE
-    runs = [
-        (f"a backward sideslip sweep {at}", slip.replace(direction=-1)),
-        (f"{sideslip} {load:.0f} N with the tyre turned on its rim", slip.replace(mount=-1)),
-        (f"{sideslip} {higher:.0f} N", slip.replace(Fz=higher)),
-        (f"{sideslip} {lower:.0f} N", slip.replace(Fz=lower)),
-        (f"{cambers} {load:.0f} N", camber),
-        (f"a backward camber sweep {at}", camber.replace(direction=-1)),
-        (f"{sideslip} {lean} and {load:.0f} N", slip.replace(gamma=CAMBER_OF_SLOPES.rad)),
-        (f"{sideslip} {pressure:g} of the pressure and {load:.0f} N", slip.replace(p=pressure * slip.p)),
-        (f"{sideslip} {fast:g} times the speed and {load:.0f} N", slip.replace(V=fast * slip.V)),
+    pressure, fast = constants.TIE_RUN_LOW_PRESSURE, constants.TIE_RUN_FAST
+    sideslip = [
+        (f"a backward sideslip sweep at {load:.0f} N", slip.replace(direction=-1)),
+        (f"{sweep} {load:.0f} N with the tyre turned on its rim", slip.replace(mount=-1)),
+        (f"{sweep} {higher:.0f} N", slip.replace(Fz=higher)),
+        (f"{sweep} {lower:.0f} N", slip.replace(Fz=lower)),
+        (f"{sweep} {LEAN} and {load:.0f} N", slip.replace(gamma=CAMBER_OF_SLOPES.rad)),
+        (f"{sweep} {pressure:g} of the pressure and {load:.0f} N", slip.replace(p=pressure * slip.p)),
+        (f"{sweep} {fast:g} times the speed and {load:.0f} N", slip.replace(V=fast * slip.V)),
         (
-            f"a repeated sideslip sweep {at} with the tyre {warmer:g} K warmer",
+            f"a repeated sideslip sweep at {load:.0f} N with the tyre {warmer:g} K warmer",
             slip.replace(T=np.nan_to_num(slip.T) + warmer),
         ),
         (
-            f"a repeated sideslip sweep {at} at the end of the test",
+            f"a repeated sideslip sweep at {load:.0f} N at the end of the test",
             slip.replace(t=float(np.max(np.nan_to_num(points.t))) + later),
         ),
     ]
     if np.any(points.phi_t):
-        runs += [
-            (f"{sideslip} {load:.0f} N on a straight path", slip.replace(phi_t=0.0)),
-            (
-                f"{sideslip} {load:.0f} N on a path of {wide:g} times the radius",
-                slip.replace(phi_t=slip.phi_t / wide),
-            ),
-            (f"a camber sweep {at} on a straight path", camber.replace(phi_t=0.0)),
+        wide = constants.TIE_RUN_WIDE
+        on_wider = slip.replace(phi_t=slip.phi_t / wide)
+        sideslip += [
+            (f"{sweep} {load:.0f} N on a straight path", slip.replace(phi_t=0.0)),
+            (f"{sweep} {load:.0f} N on a path of {wide:g} times the radius", on_wider),
         ]
-    if np.all(points.free_rolling):
-        return runs
+    drive = [] if np.all(points.free_rolling) else _driven(main, load, lower, higher)
+    return [*sideslip, *_leaning(main, load), *drive]
+
+
+def _leaning(main: Points, load: float) -> list[tuple[str, Points]]:
+    """Sweeps of camber."""
+    camber = _line(main, load, "gamma", constants.TIE_RUN_CAMBER.rad)
+    straight = (f"a camber sweep at {load:.0f} N on a straight path", camber.replace(phi_t=0.0))
+    return [
+        (f"a camber sweep to {constants.TIE_RUN_CAMBER:g} deg at {load:.0f} N", camber),
+        (f"a backward camber sweep at {load:.0f} N", camber.replace(direction=-1)),
+        *([straight] if np.any(main.phi_t) else []),
+    ]
+
+
+def _driven(main: Points, load: float, lower: float, higher: float) -> list[tuple[str, Points]]:
+    """Sweeps of longitudinal slip."""
     drive = _line(main, load, "kappa", float(np.max(np.abs(main.kappa))))
     steered = drive.replace(alpha=constants.TIE_RUN_STEERED.rad)
     sweep, steer = "sweep of longitudinal slip at", f"{constants.TIE_RUN_STEERED:g} deg sideslip"
     return [
-        *runs,
         (f"a {sweep} {higher:.0f} N", drive.replace(Fz=higher)),
         (f"a {sweep} {lower:.0f} N", drive.replace(Fz=lower)),
         (f"a backward {sweep} {load:.0f} N", drive.replace(direction=-1)),
         (f"a {sweep} {load:.0f} N with the tyre turned on its rim", drive.replace(mount=-1)),
         (f"a {sweep} {steer} and {load:.0f} N", steered),
-        (f"a {sweep} {steer}, {lean} and {load:.0f} N", steered.replace(gamma=CAMBER_OF_SLOPES.rad)),
+        (f"a {sweep} {steer}, {LEAN} and {load:.0f} N", steered.replace(gamma=CAMBER_OF_SLOPES.rad)),
     ]
 
 
