@@ -130,6 +130,13 @@ class Predictor:
         """Whether the readings were taken on a curved path."""
         return self.path != 0.0
 
+    @property
+    def sharpest(self) -> float:
+        """Largest tested curvature of the path, to either side [1/m]."""
+        inputs = itertools.chain.from_iterable(one.smooth.inputs for one in self.channels.values())
+        ends = (end for one in inputs if one.name == "phi_t" for end in (one.lower, one.upper))
+        return max(map(abs, (self.path, *ends)))
+
     def predict(
         self, tyre: Tyre, fitted: Tyre, conditions: pd.DataFrame, channels: Iterable[str] | None = None
     ) -> pd.DataFrame:

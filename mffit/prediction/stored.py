@@ -20,7 +20,7 @@ from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
 from mffit.points.points import of_si
-from mffit.prediction.conditions import checked, read_conditions
+from mffit.prediction.conditions import PATH, checked, read_conditions
 from mffit.prediction.predictor import MissedChannel, Predictor
 from mffit.quantities import CHANNELS
 from mffit.rig_errors import BY_NAME as ERROR_OF
@@ -125,7 +125,7 @@ def predict(folder: str | Path, conditions: str | Path | pd.DataFrame) -> pd.Dat
 def _beyond_ranges(known: Predictor, points: Points, tyre: Tyre) -> Iterator[str]:
     """A sentence for each condition that leaves the range of the property file: force and uncertainty are extrapolated there.
 
-    Temperature has no range in a file; that of the test counts, to whose ends it is held.
+    Temperature and path curvature have no range in a file; those of the test count. Temperature is held to its ends.
     """
     ranges = {
         name: tuple(tyre[key] * of_si(name) for key in keys)
@@ -136,8 +136,12 @@ def _beyond_ranges(known: Predictor, points: Points, tyre: Tyre) -> Iterator[str
     if known.T_range is not None:
         ranges["T_degC"] = known.T_range
         words["T_degC"] = "the tested temperatures", "the force is that at the nearest of them"
+    if known.curved:
+        ranges[PATH] = (-known.sharpest, known.sharpest)
+        words[PATH] = "the tested path curvature", of_file[1]
     for name, (low, high) in ranges.items():
-        values, slack = points.condition(name), 1e-6 * (high - low)
+        values = points.phi_t if name == PATH else points.condition(name)
+        slack = 1e-6 * (high - low)
         rows = np.flatnonzero((values < low - slack) | (values > high + slack))
         if len(rows):
             what, so = words[name]
