@@ -104,18 +104,6 @@ SOFTEST_SLIP_STIFFNESS = Real(
     "-",
     "Slope of Fx per load over slip below which the slip is in per cent: tyres have 5 to 50 per unit of slip.",
 )
-STIFFEST_SLIP_STIFFNESS = Real(
-    200.0,
-    "-",
-    "Slope of Fx per load over slip that no tyre reaches: four times the stiffest. A channel that moves by less than Fx needs is "
-    "not the slip.",
-)
-RIGHT_FORM = Real(
-    0.25,
-    "-",
-    "Change of the radius that slip and speeds imply, over that of slip over the road's speed, below which another form of the "
-    "slip is the right one.",
-)
 LARGEST_BRAKE_SLIP_OF_FORM = Real(
     0.9, "-", "Slip of braking beyond which the wheel nearly stands and speeds imply no radius."
 )

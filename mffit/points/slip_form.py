@@ -73,7 +73,7 @@ def slip_form(slip: np.ndarray, turns: np.ndarray, conditions: np.ndarray) -> Sl
     if before <= constants.SLIP_OF_ZERO_FORCE:
         return SlipForm(ROAD, before, before)
     after = changes[best]
-    if after <= constants.SLIP_OF_ZERO_FORCE and after < constants.RIGHT_FORM * before:
+    if after <= min(constants.SLIP_OF_ZERO_FORCE, before - constants.SLIP_OF_ZERO_FORCE):
         return SlipForm(best, before, after)
     return SlipForm(ROAD if before < constants.SLIP else None, before, after)
 

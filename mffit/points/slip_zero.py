@@ -27,11 +27,14 @@ from mffit.sweeps.sweep import MeasuredRows
 from tir.constants import EFFECTIVE_RADIUS_RANGE
 from tir.errors import listed, some
 from tir.frozen import ReadOnlyArrays
+from tir.parameters import BY_NAME
 
 FREE, LOADED, UNLOADED = "free-rolling", "loaded-radius", "unloaded-radius"
 """Possible references of a slip column."""
 WEAKEST = constants.SOFTEST_SLIP_STIFFNESS * constants.SMALLEST_SWEEP_OF_SLIP
 """|Fx| over load that every driven tyre exceeds."""
+STIFFEST = BY_NAME["PKX1"].bounds[1]
+"""Slope of Fx over load and slip beyond which a channel moves too little to be the slip."""
 FROM_SPEEDS = "slip from wheel and road speed"
 """Replaces the heading if a rig records no slip."""
 
@@ -140,9 +143,7 @@ def slip_zero(of: Driven) -> SlipZero | None:
     load = np.abs(of.Fz)
     with np.errstate(invalid="ignore", divide="ignore"):
         force = of.Fx / load
-    near = np.all(np.isfinite([*of[:-2], force]), axis=0) & (
-        load > constants.UNLOADED * np.nanmedian(load) if len(load) else False
-    )
+    near = np.all(np.isfinite([*of[:-2], force]), axis=0) & (load > constants.UNLOADED * finite_median(load))
     near &= np.abs(force) < constants.NEAR_ZERO
     some = 0.3 * constants.NEAR_ZERO
     in_steps = min(np.sum(force[near] > some), np.sum(force[near] < -some)) < constants.FEWEST_POINTS
@@ -177,12 +178,12 @@ def unexplained_drive(of: Driven) -> float:
     """Range of Fx over the load, straight ahead; 0 if the slip moves enough to explain it by the stiffest tyre."""
     load = np.abs(of.Fz)
     straight = np.all(np.isfinite([of.kappa, of.Fx, load]), axis=0) & (np.abs(of.alpha) < STRAIGHT.rad)
-    straight &= load > constants.UNLOADED * np.nanmedian(load) if np.any(straight) else False
+    straight &= load > constants.UNLOADED * finite_median(load)
     if np.sum(straight) < constants.FEWEST_POINTS:
         return 0.0
     driven = (of.Fx[straight] / load[straight], of.kappa[straight])
     drive, slip = (float(np.ptp(np.percentile(x, constants.CORE))) for x in driven)
-    return drive if drive > max(WEAKEST, constants.STIFFEST_SLIP_STIFFNESS * slip) else 0.0
+    return drive if drive > max(WEAKEST, STIFFEST * slip) else 0.0
 
 
 def against_free_rolling(
@@ -503,23 +504,15 @@ def _with_slip(sweeps: Sequence[Sweep], unloaded_radius: float) -> tuple[tuple[S
     """
     out, files = [], []
     for sweep in sweeps:
-        slip = _slip(sweep, unloaded_radius)
-        if slip is not None:
-            files.append(sweep.file)
+        unknown = "kappa" not in sweep.table and "V_mps" in sweep.table
+        slip = slip_from_speeds(readings_of(sweep), sweep.omega, unloaded_radius) if unknown else None
+        files += [] if slip is None else [sweep.file]
         out.append(sweep if slip is None else replace(sweep, kappa=slip))
-    if not files:
-        return tuple(out), ()
-    return tuple(out), (
+    said = (
         f"{some(list(dict.fromkeys(files)))}: no slip was recorded, but wheel and road speed show that the wheel was driven or "
-        "braked; slip follows from both, with its zero at Fx = 0 where Fx was measured",
+        "braked; slip follows from both, with its zero at Fx = 0 where Fx was measured"
     )
-
-
-def _slip(sweep: Sweep, radius: float) -> np.ndarray | None:
-    """Slip (n,) of a driven or braked wheel; None if it was recorded, a speed is missing, or the wheel rolled freely."""
-    if "kappa" in sweep.table or "V_mps" not in sweep.table:
-        return None
-    return slip_from_speeds(readings_of(sweep), sweep.omega, radius)
+    return tuple(out), (said,) if files else ()
 
 
 def slip_from_speeds(of: Driven, omega: np.ndarray, radius: float) -> np.ndarray | None:
