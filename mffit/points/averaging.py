@@ -32,11 +32,6 @@ def rows_as_points(sweep: Sweep, phi_t: float, rows: np.ndarray) -> Points:
     return _points(sweep, phi_t, rows, means, sweep.table.iloc[rows])
 
 
-def sound_rows(stretch: Stretch, faulty: np.ndarray) -> np.ndarray:
-    """The samples (m,) of a stretch that are not ``faulty`` (n,)."""
-    return np.flatnonzero(~faulty[stretch.begin : stretch.end]) + stretch.begin
-
-
 class Means(NamedTuple):
     """Points from the stretches of a recording."""
 
@@ -58,14 +53,14 @@ def means(
         return Means(rows_as_points(sweep, phi_t, np.flatnonzero(used)), (), used)
     kept, sizes = [], []
     for stretch in stretches:
-        rows = sound_rows(stretch, faulty)
+        rows = stretch.begin + np.flatnonzero(~faulty[stretch.begin : stretch.end])
         first, usual = (np.zeros(1, dtype=int), 0) if stretch.kind == PLATEAU else _blocks(sweep, rows)
         counts = np.diff(np.r_[first, len(rows)])
         enough = 2 * counts >= usual  # at least half of a block's samples are sound
         kept.append(rows[np.repeat(enough, counts)])
         sizes.append(counts[enough])
     counts = [len(one) for one in sizes]
-    rows, first = np.concatenate(kept), _begins(np.concatenate(sizes))
+    rows, first = np.concatenate(kept), np.cumsum(np.r_[0, np.concatenate(sizes)])[:-1]
     used[rows] = True
     moving = np.repeat([stretch.kind != PLATEAU for stretch in stretches], counts)
     names = tuple(dict.fromkeys(labels))
@@ -119,11 +114,6 @@ def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:
     size = max(1, round(step / interval))
     block = np.floor((time - time[0]) / (size * interval) + 1e-6)
     return np.r_[0, np.flatnonzero(np.diff(block)) + 1], size
-
-
-def _begins(sizes: Sequence[int] | np.ndarray) -> np.ndarray:
-    """First index of each of successive blocks."""
-    return np.cumsum(np.r_[0, sizes])[:-1].astype(int)
 
 
 def _mean(values: np.ndarray, rows: np.ndarray, first: np.ndarray) -> np.ndarray:
