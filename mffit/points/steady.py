@@ -123,10 +123,9 @@ def _load_changes(settings: SteadySettings, moving: np.ndarray) -> np.ndarray:
     for begin, end in runs(wanders):
         if not np.any(moving[begin:end]):
             continue
-        middle = begin + int(np.median(np.flatnonzero(moving[begin:end])))
-        before, after = smooth[max(begin - rest, 0) : middle + 1], smooth[middle : end + rest]
-        apart = abs(float(np.mean(after) - np.mean(before)))
-        if apart < 0.5 * (1.0 + 0.5) * np.ptp([*before, *after]):
+        first, middle = max(begin - rest, 0), begin + int(np.median(np.flatnonzero(moving[begin:end])))
+        apart = abs(float(np.mean(smooth[middle : end + rest]) - np.mean(smooth[first : middle + 1])))
+        if apart < 0.5 * (1.0 + 0.5) * np.ptp(smooth[first : end + rest]):
             changing[begin:end] = False
     return changing
 
