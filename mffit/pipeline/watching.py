@@ -23,6 +23,8 @@ from mffit.results.campaign import NOTHING_YET, Arrival, WatchedCampaign
 from mffit.sweeps import formats
 from mffit.sweeps.loading import NUMBER
 
+OF_ANOTHER = "; tyre.toml does not list this file: if it is of another tyre or rig, move it to another folder"
+"""What a file that nobody listed may be, beyond what is wrong with it."""
 LOOK_EVERY = 1.0
 """Time [s] from one look at the folder to the next."""
 
@@ -124,6 +126,7 @@ class _Watch:
             changed=changed,
             taken=tuple(entry.file for entry in config.sweep),
             awaited=tuple(dict.fromkeys([*missing, *awaited])),
+            refused=tuple(name for name in refused if name in listed),
             points=0 if reading is None else len(reading.points),
             measured=measured,
             before=self._last.epsilon_gamma,
@@ -149,5 +152,7 @@ class _Watch:
             self._states[name] = bool(why), own, NUMBER.sub("0", why), file.signature
             if self._states[name] != before.get(name):
                 text = "" if why or name in listed else sweep_text(file.entry)
+                if why and name not in listed:
+                    why += OF_ANOTHER
                 yield Arrival(name, "refused" if why else "taken", own, why, text)
         yield from (Arrival(name, "gone") for name in before if name not in {*self._states, *awaited})

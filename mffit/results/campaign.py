@@ -33,6 +33,7 @@ class WatchedCampaign(Brief):
     changed: tuple[Arrival, ...]  #: files, since the campaign before
     taken: tuple[str, ...]  #: files that count
     awaited: tuple[str, ...]  #: files that ``tyre.toml`` lists and that are missing or still being written
+    refused: tuple[str, ...]  #: files that ``tyre.toml`` lists and that do not count
     points: int  #: of all files that count
     measured: Measured | None  #: as by ``mffit spin``; None without points that it can use
     before: Quantity | None  #: eps_gamma before the change
@@ -49,18 +50,19 @@ class WatchedCampaign(Brief):
     @property
     def headline(self) -> str:
         """Progress of the campaign, as a sentence."""
-        there = len(self.taken)
-        return f"{there} of {there + len(self.awaited)} files, {self.points} points"
+        every = {*self.taken, *self.awaited, *self.refused}
+        return f"{len(self.taken)} of {len(every)} files, {self.points} points"
 
 
 keys(
     WatchedCampaign,
-    "headline changed taken awaited points ±epsilon_gamma before=before.value alignment next spin=measured warnings problem?",
+    "headline changed taken awaited refused points ±epsilon_gamma before=before.value alignment next spin=measured warnings "
+    "problem?",
     next=lambda found: (
         found.next_run and {**document(found.next_run.step), "goal": found.next_run.goal.label}
     ),
 )
 
 
-NOTHING_YET = WatchedCampaign((), (), (), 0, None, None, None, None, (), "")
+NOTHING_YET = WatchedCampaign((), (), (), (), 0, None, None, None, None, (), "")
 """A campaign before its first file."""

@@ -155,6 +155,8 @@ def test_a_bad_file_is_said_once_and_taken_when_it_is_corrected(rig):
     assert (arrival.file, arrival.state) == (bad.name, "refused")
     assert f"{bad.name}:2: column p_kPa" in arrival.why
     assert [one.state for one in last.changed] == ["taken"]
+    assert refused.refused == (bad.name,)
+    assert len({one.headline.split()[2] for one in found}) == 1  # as many files as tyre.toml lists
     assert last.points == 30
 
 
@@ -207,6 +209,7 @@ def test_a_foreign_file_for_which_the_rig_is_blamed_is_left_out_and_named(rig):
     assert states["more.csv"].sweep
     said = campaign_text(found).replace("\n", " ")
     assert all(f"not taken: {name}: " in said for name in foreign)
+    assert said.count("if it is of another tyre") == len(foreign)
 
 
 def test_files_that_nobody_listed_are_taken_in_and_shown_as_toml(rig):
