@@ -49,9 +49,10 @@ def show(
         tyres = list(tyres)
     project = _project(tyres)
     if project is None:
-        return viewer.show(tyres, out, given=given)
-    result = build(project, progress=progress)
-    page = viewer.project_page(result, verdict=verdict(result), judgement=judgement(result))
+        page = viewer.files_page(tyres, given)
+    else:
+        result = build(project, progress=progress)
+        page = viewer.project_page(result, verdict=verdict(result), judgement=judgement(result))
     if out is not None:
         page.write(out)
     return page

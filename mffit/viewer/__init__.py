@@ -1,6 +1,6 @@
 """Pages that evaluate tyres by themselves: curves of property files, or a project with its points and coefficients."""
 
-from mffit.viewer.page import Page, show
+from mffit.viewer.page import Page, files_page
 from mffit.viewer.project import project_data, project_html, project_page, readings_data
 
-__all__ = ["Page", "project_data", "project_html", "project_page", "readings_data", "show"]
+__all__ = ["Page", "files_page", "project_data", "project_html", "project_page", "readings_data"]

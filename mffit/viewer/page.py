@@ -59,32 +59,11 @@ class Page:
         return f'<iframe {frame} srcdoc="{html.escape(self.html)}"></iframe>'
 
 
-def show(
+def files_page(
     tyres: Given | Mapping[str, Given] | Iterable[Given],
-    out: str | Path | None = None,
-    *,
     given: Mapping[str, float] = MappingProxyType({}),
 ) -> Page:
-    """A page with the curves of property files in common panels, and sliders for the operating condition.
-
-    The page evaluates the tyres by itself, with code generated from the equations. It needs no network and no server.
-
-    Parameters
-    ----------
-    tyres : a path or :class:`tir.Tyre`, several of them, or a mapping from names to them
-    out : file to write; nothing is written if None
-    given : values [SI] of keys that a file lacks, such as UNLOADED_RADIUS
-
-    Returns
-    -------
-    Page
-        ``.html`` is the text, ``.write(path)`` saves it; a notebook shows it.
-
-    Raises
-    ------
-    InputError, TirError
-        On a file that cannot be read or drawn, or if ``out`` is another file.
-    """
+    """The page of property files; arguments and errors as those of :func:`mffit.show`."""
     found = named(tyres, given)
     names = sorted({name for on in (False, True) for name in trace(Switches(on), OUTPUTS).parameters})
     data = {
@@ -103,10 +82,7 @@ def show(
         panels=PANELS,
         quantities=MODEL,
     )
-    page = Page(filled, tuple(found))
-    if out is not None:
-        page.write(out)
-    return page
+    return Page(filled, tuple(found))
 
 
 def rendered(

@@ -75,7 +75,7 @@ def _opened(paths: Sequence[Path]) -> Opened:
 
     first = paths[0]
     if all(path.suffix.lower() == ".tir" for path in paths):
-        return Opened(html=viewer.show(paths).html)
+        return Opened(html=viewer.files_page(paths).html)
     if len(paths) > 1:
         raise InputError(
             "opens one project at a time; give this file alone, or property files only", file=first

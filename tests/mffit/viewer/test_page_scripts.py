@@ -26,7 +26,7 @@ from mffit.config.lines import line_ranges, ranges_text
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.points import concatenate
 from mffit.rig import Simulation
-from mffit.viewer import project_data, project_html, show
+from mffit.viewer import files_page, project_data, project_html
 from mffit.viewer.bundle import EXPORT, IMPORT, module, script
 from mffit.viewer.packing import packed
 from mffit.viewer.page import recordings_html
@@ -372,7 +372,7 @@ def test_a_linter_finds_nothing(tmp_path):
     here = {"folder": "x", "endings": []}
     pages = {
         "project": project_html("x", None, turn_slip=False, star=False, window={"fits": 0}, here=here),
-        "show": show(SAMPLE / "true.tir").html,
+        "show": files_page(SAMPLE / "true.tir").html,
         "recordings": recordings_html("x", "", here),
     }
     texts = {
