@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from scipy.special import ndtri
+from scipy.special import ndtr, ndtri
 
-from mffit.constants import FALSE_ALARM
+from mffit.constants import FALSE_ALARM, PREDICTION_FALSE_ALARM
 
 NORMAL = 1.482602218505602
 """Standard deviation of normal noise over the median of its absolute value."""
@@ -23,6 +23,16 @@ def beyond(chance: float) -> float:
 
 ALARM = beyond(FALSE_ALARM)
 """Number of standard deviations that a sound value exceeds with the probability of a false alarm."""
+
+
+def significant(z: np.ndarray) -> np.ndarray:
+    """Mask (n,) of the differences, in standard errors, that are not chance: 1 % of those found may be (Benjamini and Hochberg
+    1995).
+    """
+    chance = 2.0 * ndtr(-np.abs(z))
+    ordered = np.sort(chance)
+    passing = ordered < PREDICTION_FALSE_ALARM * np.arange(1, len(z) + 1) / max(len(z), 1)
+    return np.asarray(chance <= np.max(ordered[passing], initial=-1.0))
 
 
 def rms(x: np.ndarray) -> float:

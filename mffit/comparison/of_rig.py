@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import chdtrc
 
 from mffit.as_json import keys
 from mffit.config import Config
@@ -69,8 +70,6 @@ def explained_by_rig(
 
     ``declared`` has the standard uncertainty of each error by name, in its unit.
     """
-    from scipy.stats import chi2  # slow to load, so it is imported only on use
-
     if not declared:
         return None
     read, slopes = simulation.sensitivities(points, [*declared], channels_of(points))
@@ -97,7 +96,7 @@ def explained_by_rig(
         errors=dict(sorted(errors.items(), key=lambda item: -abs(item[1].value) / item[1].u)),
         left={name: rms(rest - slopes[name] @ (size * spread)) for name, rest in apart.items()},
         share=max(after - n, 0.0) / max(before - n, 1.0),
-        is_noise=bool(chi2.sf(before, n) > FALSE_ALARM),
-        is_plausible=bool(chi2.sf(size @ size, len(size)) > FALSE_ALARM),
-        leaves_noise=bool(chi2.sf(after, n) > FALSE_ALARM),
+        is_noise=bool(chdtrc(n, before) > FALSE_ALARM),
+        is_plausible=bool(chdtrc(len(size), size @ size) > FALSE_ALARM),
+        leaves_noise=bool(chdtrc(n, after) > FALSE_ALARM),
     )

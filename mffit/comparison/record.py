@@ -5,19 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import compress
 
 import numpy as np
-from scipy.special import ndtr
 
 from mffit.as_json import keys
 from mffit.brief import Brief
 from mffit.comparison.of_rig import ExplainedByRig
-from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.fleet import Specimen
 from mffit.numbers import Numbers
 from mffit.points import Points
 from mffit.prediction import Predictor
 from mffit.rig import Simulation
+from mffit.scatter import significant
 from tir import Tyre
 from tir.frozen import ReadOnlyArrays
 from tir.parameters import BY_NAME
@@ -160,16 +160,9 @@ class Comparison(Brief):
     @property
     def significant(self) -> tuple[Difference, ...]:
         """The numbers, then the coefficients, that differ beyond chance, at a false discovery rate of 1 %."""
-        from scipy.stats import false_discovery_control  # slow to load, so it is imported only on use
-
-        known = [
-            row for row in (*self.numbers, *self.coefficients) if row.z is not None and math.isfinite(row.z)
-        ]
-        if not known:
-            return ()
-        chances = [2.0 * ndtr(-abs(row.z or 0.0)) for row in known]
-        adjusted = false_discovery_control(np.clip(chances, 1e-300, 1.0))
-        return tuple(row for row, p in zip(known, adjusted, strict=True) if p < PREDICTION_FALSE_ALARM)
+        rows = (*self.numbers, *self.coefficients)
+        known = [row for row in rows if row.z is not None and math.isfinite(row.z)]
+        return tuple(compress(known, significant(np.array([row.z for row in known], dtype=float))))
 
 
 keys(

@@ -7,13 +7,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.special import ndtr
 
-from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import Noise
 from mffit.points import Points, levels
 from mffit.quantities import CONDITIONS
+from mffit.scatter import significant
 
 PAIRS = (
     ("alpha_deg", "gamma_deg"),
@@ -44,14 +43,8 @@ def where(points: Points, residual: np.ndarray, noise: Noise) -> tuple[Region, .
     ``residual`` (c n,) is measured minus simulated, in the channels of ``noise``. Regions that mostly repeat the points of a
     more significant one are left out.
     """
-    from scipy.stats import false_discovery_control  # slow to load, so it is imported only on use
-
     found = list(_tested(points, residual, noise))
-    if not found:
-        return ()
-    p_values = [2.0 * ndtr(-abs(region.z)) for region, _ in found]
-    adjusted = false_discovery_control(np.clip(p_values, 1e-300, 1.0))
-    passing = [found[k] for k in np.flatnonzero(adjusted < PREDICTION_FALSE_ALARM)]
+    passing = [found[k] for k in np.flatnonzero(significant(np.array([region.z for region, _ in found])))]
     passing.sort(key=lambda item: -abs(item[0].z))
     return _distinct(passing)
 
