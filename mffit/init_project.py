@@ -41,7 +41,7 @@ def _template() -> str:
 
 
 def copy_sample(name: str, folder: str | Path) -> list[Path]:
-    """Copy a sample that comes with the package, as :func:`init_project`; raises InputError also if there is no such sample."""
+    """Copy a sample of the package to a folder, as :func:`init_project` does. Raises InputError also if the sample is unknown."""
     if name not in sample_names():
         raise InputError(f"there is no sample {name!r}; choose one of {', '.join(sample_names())}")
     files = [entry for entry in _samples().joinpath(name).iterdir() if entry.is_file()]

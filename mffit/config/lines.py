@@ -18,7 +18,7 @@ LineRange = tuple[int, int]
 
 ITEM = re.compile(r"\s*(\d+)\s*(?:-\s*(\d+)\s*)?", re.ASCII)
 DIGITS = 12
-"""No file has a line with more; larger numbers do not fit into an array, and Python reads none of thousands of digits."""
+"""Longest line number accepted; larger ones do not fit into an array, and Python refuses thousands of digits."""
 
 
 class LineListError(ValueError):

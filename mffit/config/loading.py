@@ -27,7 +27,7 @@ def with_globs_expanded(
     """The content with one entry per file in place of every pattern, sorted by name, and the lines of its keys.
 
     The name of an existing file is never a pattern, even if it contains ``*``, ``?`` or ``[``. With ``awaiting``, a pattern
-    that matches nothing yet stays as it is.
+    that matches nothing yet is kept.
 
     Raises InputError if a pattern matches nothing.
     """

@@ -305,7 +305,7 @@ SetupName = Annotated[str, AfterValidator(_setup_name)]
 
 
 class SetupTable(Table):
-    """The keys of a [[sweep]] that say on which set-up of the rig, and which way, it was run."""
+    """Keys of a [[sweep]] about its set-up: path, mount and rolling direction."""
 
     file: str
     direction: Literal["forward", "backward"] | None = None

@@ -11,12 +11,12 @@ from pydantic import AfterValidator, PlainSerializer, ValidatorFunctionWrapHandl
 from mffit.config.quantities import Range, length, wrong
 
 DIVISORS = {"normal": 1.0, "rectangular": math.sqrt(3.0), "triangular": math.sqrt(6.0)}
-"""What divides ``value``, half the width of a distribution with ends, into its standard uncertainty (JCGM 100, 4.3.7, 4.3.9)."""
+"""``value`` over the standard uncertainty; ``value`` is the half-width of a bounded distribution (JCGM 100, 4.3.7, 4.3.9)."""
 KEYS = ("value", "dof", "distribution")
 
 
 class StatedUncertainty(float):
-    """A standard uncertainty that knows its degrees of freedom and its distribution."""
+    """A standard uncertainty with its degrees of freedom and distribution."""
 
     value: float  #: as stated, half the width of a distribution with ends
     dof: float

@@ -68,9 +68,8 @@ def guesses(
 ) -> Guesses:
     """The guessed channels of a file, and remarks.
 
-    The unloaded radius [m], if known, checks the speed of rotation. ``named`` are headings that a user names, by channel; they
-    hold instead of those that laboratories use; ``given`` are channels whose value a user gives. Samples of a recording at
-    standstill are not looked at.
+    The unloaded radius [m], if known, checks the speed of rotation. ``named`` are the user's headings by channel, which replace
+    those that laboratories use; ``given`` are channels whose value the user gives. Samples at standstill are ignored.
     """
     raw, of_rest = _rolling(raw)
     named = {name: heading for name, heading in named.items() if heading in raw.headings}
@@ -217,7 +216,7 @@ def _known_headings(raw: RawTable, channel: Channel, others: Collection[str]) ->
 
 
 def _unit_within(heading: str, channel: Channel) -> str:
-    """The unit that a heading states after a name; "" if it states none of the channel's kind, or is the contract's."""
+    """The unit that a heading states after a name; "" if the unit is of another kind, or the heading is the contract's."""
     found = WITH_UNIT.fullmatch(heading)
     unit = found[2] if found and heading != channel.name else ""
     return unit if spelt(unit) and is_unit(unit) and is_of_kind(unit, channel) else ""

@@ -37,7 +37,7 @@ def names_tyre(heading: str) -> bool:
 
 
 def named_tyre(about: Mapping[str, str]) -> str:
-    """The tyre that a recording names; from a title, only the text after the word tyre; "" without one."""
+    """Name of the tyre in a recording, from a title only the text after the word tyre; "" if there is none."""
     if about.get("tireid"):
         return about["tireid"]
     found = TYRE_IN_TITLE.search(title_of(about))
@@ -50,7 +50,7 @@ def title_of(about: Mapping[str, str]) -> str:
 
 
 def other_names(named: Mapping[Path, str]) -> list[str]:
-    """A sentence if files name different tyres; ``named`` is the name in each, "" without one."""
+    """A sentence if files name different tyres; ``named`` maps each file to the name in it, or to ""."""
     first: dict[str, Path] = {}
     for path, name in named.items():
         if name:

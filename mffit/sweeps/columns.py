@@ -45,7 +45,7 @@ class Columns(ReadOnlyArrays):
     warnings: tuple[str, ...]
     headings: Mapping[str, str] = field(default_factory=dict)  #: headings of the file, by contract column
     standing: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))
-    """Lines of samples at standstill, which are left out before anything is judged."""
+    """Lines of samples at standstill, which are removed before any check."""
 
     def line(self, row: int) -> int:
         """Line of a row in the file."""
@@ -79,7 +79,7 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
     Keys that are ``shared`` come from ``[columns]``, which applies to all files; if a file lacks the heading, such a key is
     ignored unless the column is required, and a value yields to a column of that name. A recording (``time_s``) may have gaps:
     cells without a number, and rare samples outside the plausible range, which become NaN. In a table of points each of them
-    is an error. Samples of a recording at standstill are left out first: there, speed, pressure and slip may read anything.
+    is an error. Samples of a recording at standstill are removed first, because speed, pressure and slip are undefined there.
 
     Raises InputError if a column is missing, a cell is not a finite number, or a value is outside its plausible range.
     """
@@ -117,9 +117,9 @@ def _without_standstill(raw: RawTable, headings: Mapping[str, str]) -> tuple[Raw
 
 
 def standing(V: np.ndarray) -> np.ndarray:
-    """Mask (n,) of the samples at which the road stands, from its speed in any unit and with any sign; NaN is not a standstill.
+    """Mask (n,) of the samples at standstill, from the speed of the road in any unit and with any sign; False where it is NaN.
 
-    The usual speed is that of the rolling wheel, so a recording may stand for most of its time.
+    The limit is relative to the median speed of the rolling wheel, so most of a recording may be at standstill.
     """
     speed = np.abs(V)
     largest = np.max(speed, where=np.isfinite(speed), initial=0.0)

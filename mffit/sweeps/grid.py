@@ -42,7 +42,7 @@ def ragged(count: int, width: int, path: Path, line: int) -> InputError:
 
 
 def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:
-    """Headings and units in the first rows of a table, none of them empty, whose cells are stripped of blanks.
+    """Headings and units in the first rows of a table. Rows are not empty, and their cells are stripped of blanks.
 
     Headings may be in two rows, where cells were merged: an upper cell names a column by itself, or the group of those below.
     A column without a heading has an empty one here.
@@ -65,9 +65,9 @@ def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:
 
 
 def _row_of_headings(rows: Sequence[Row], usual: int) -> int:
-    """The first row of the texts that stand above the data; ``usual`` is the number of cells of most rows.
+    """Index of the first of the rows of text directly above the data; ``usual`` is the number of cells in most rows.
 
-    A title fills few of the cells. Blocks of keys and values, which loggers write above the headings, hold single numbers.
+    A title fills only a few cells. A block of keys and values, as loggers write above the headings, contains some numbers.
     """
     full = [k for k, row in enumerate(rows) if 2 * sum(c != "" for c in row) > usual]
     data = next((k for k in full if 2 * sum(c != "" and is_number(c) for c in rows[k]) > usual), 0)
@@ -99,7 +99,7 @@ def _without_numbers(row: Row) -> bool:
 
 
 def _rows_of_headings(rows: Sequence[Row], at: int) -> tuple[Row, Row, int]:
-    """The row of groups, empty without one, and that of headings, of which ``at`` is one; and the number of rows up to them."""
+    """The row of groups (empty if there is none) and that of headings, one of which is row ``at``; and the row after them."""
     below = rows[at + 1] if at + 1 < len(rows) else ()
     if _without_numbers(below) and not _is_of_units(below) and _fills_gaps(below, rows[at]):
         return rows[at], below, at + 2

@@ -132,7 +132,7 @@ def _file(config: Config, index: int, entry: SweepTable, setup: str) -> _File:
 
 
 def _sheets_left_out(tables: Mapping[str, RawTable]) -> list[str]:
-    """Sentences about workbooks with sheets with data of which no table, by the name in ``tyre.toml``, is read."""
+    """Sentences about sheets with data that no [[sweep]] reads; ``tables`` are those read, by their names in ``tyre.toml``."""
     left: dict[Path, list[str]] = {}
     for name, raw in tables.items():
         book = file_of(name)

@@ -164,13 +164,13 @@ def _plain(item: Any, file: Any) -> Any:
 
 
 def _class_of(item: Any) -> str:
-    """The class that MATLAB gives a variable; "" without one."""
+    """MATLAB's class of a variable; "" if the file states none."""
     kind = item.attrs.get("MATLAB_class", b"")
     return kind.decode() if isinstance(kind, bytes) else str(kind)
 
 
 def _refuse_other_files(file: Any, path: Path, h5py: Any) -> None:
-    """HDF5 takes numbers out of any file that it names, which may be none of the sender's."""
+    """Refuse links to other files: HDF5 would read any file on this machine that they name."""
     elsewhere: list[bool] = []
     file.visititems_links(lambda _, link: elsewhere.append(isinstance(link, h5py.ExternalLink)))
     file.visititems(

@@ -50,12 +50,12 @@ class Stacked(NamedTuple):
 
     @property
     def about(self) -> dict[str, str]:
-        """What the file says of the load, for ``RawTable.about``."""
+        """Where the load comes from, as an entry of ``RawTable.about``."""
         return {FROM_NAMES: f"from the names {', '.join(self.names)}"} if self.names else {}
 
 
 def with_load_of_names(raw: RawTable) -> RawTable:
-    """The table with one set of columns below the other if their names have the load, else as it is."""
+    """The table with the sets of columns stacked if their names state the load, else unchanged."""
     found = stacked(dict(zip(raw.headings, raw.cells, strict=True)))
     if found is None:
         return raw

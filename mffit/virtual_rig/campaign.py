@@ -29,7 +29,7 @@ LEADING = ("tyre", "rig", "rolling_radius")
 
 @dataclass(frozen=True, slots=True)
 class Campaign:
-    """The output of the virtual rig."""
+    """Output of the virtual rig."""
 
     tables: dict[str, pd.DataFrame]  #: one per sweep by file name, in the rig's axes and the contract's units
     configuration: dict[str, Any]  #: the content of tyre.toml
