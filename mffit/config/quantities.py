@@ -40,7 +40,7 @@ class Range:
 
 
 def wrong(sentence: str, key: str = "") -> PydanticCustomError:
-    """An error with this sentence for the user; ``key`` is the dotted key that is wrong if it is not that of the value checked."""
+    """An error with this sentence for the user; ``key`` is the dotted key that is wrong, if not that of the checked value."""
     return PydanticCustomError("sentence", "{sentence}", {"sentence": sentence, "key": key})
 
 
