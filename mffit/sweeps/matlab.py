@@ -47,9 +47,9 @@ def read_mat(path: Path) -> RawTable:
     about = dict(found.about)
     if apart:
         about["left out"] = f"{', '.join(apart)}, at conditions of its own"
-    sets = stacked(vectors)  # with vectors of one length for each load
+    sets = stacked(vectors, found.units)  # with vectors of one length for each load
     columns = found.runs or (sets.columns if sets else _of_one_length(vectors, found, path))
-    stated = sets.units(found.units) if sets else found.units
+    stated = sets.units if sets else found.units
     return RawTable(
         headings=tuple(columns),
         units=tuple(stated.get(name, "") for name in columns),

@@ -37,41 +37,32 @@ class Stacked(NamedTuple):
     """Columns of equal length, with one set of columns below the other."""
 
     columns: dict[str, Cells]
-    sources: dict[str, str]  #: by column, the first column behind it, which has its unit
+    units: dict[str, str]
     rows: np.ndarray  #: row of each reading within its set
-    unit: str  #: of the load
-    names: tuple[str, ...]  #: which have the load; empty if the load is a column of the sets
-
-    def units(self, stated: Mapping[str, str]) -> dict[str, str]:
-        """The units of the columns, from those of the file."""
-        return {name: stated.get(source, "") for name, source in self.sources.items()} | {
-            LOAD_HEADING: self.unit
-        }
-
-    @property
-    def about(self) -> dict[str, str]:
-        """Where the load comes from, as an entry of ``RawTable.about``."""
-        return {FROM_NAMES: f"from the names {', '.join(self.names)}"} if self.names else {}
+    about: dict[
+        str, str
+    ]  #: where the load comes from, for ``RawTable.about``; empty if it is a column of the sets
 
 
 def with_load_of_names(raw: RawTable) -> RawTable:
     """The table with the sets of columns stacked if their names state the load, else unchanged."""
-    found = stacked(dict(zip(raw.headings, raw.cells, strict=True)))
+    found = stacked(
+        dict(zip(raw.headings, raw.cells, strict=True)), dict(zip(raw.headings, raw.units, strict=True))
+    )
     if found is None:
         return raw
-    units = found.units(dict(zip(raw.headings, raw.units, strict=True)))
     return replace(
         raw,
         headings=tuple(found.columns),
-        units=tuple(units.get(heading, "") for heading in found.columns),
+        units=tuple(found.units.get(heading, "") for heading in found.columns),
         cells=tuple(found.columns.values()),
         lines=np.asarray(raw.lines)[found.rows],
         about={**raw.about, **found.about},
     )
 
 
-def stacked(columns: Mapping[str, Cells]) -> Stacked | None:
-    """One set of columns below the other; None if the numbers in the names are not loads.
+def stacked(columns: Mapping[str, Cells], units: Mapping[str, str]) -> Stacked | None:
+    """One set of columns below the other, from columns and their units by name; None if the numbers in the names are not loads.
 
     They are loads if every set has a side force and the same channels, and the load of the sets, else the peak of the side
     force, is in proportion to them; numbers of wheels or sensors are not.
@@ -105,12 +96,13 @@ def stacked(columns: Mapping[str, Cells]) -> Stacked | None:
     if not measured:
         joined[LOAD_HEADING] = np.repeat([one.load for one in sets], counts)
     joined[RUN] = [f"{one.load:g}" for one, n in zip(sets, counts, strict=True) for _ in range(n)]
+    of_names = f"from the names {', '.join(one.names[channels[SIDE]] for one in sets)}"
+    sources = {name: name for name in shared} | dict(first.names)
     return Stacked(
         columns=joined,
-        sources={name: name for name in shared} | dict(first.names),
+        units={LOAD_HEADING: first.unit} | {k: units[name] for k, name in sources.items() if units.get(name)},
         rows=np.concatenate([np.arange(n) for n in counts]),
-        unit=first.unit,
-        names=() if measured else tuple(one.names[channels[SIDE]] for one in sets),
+        about={} if measured else {FROM_NAMES: of_names},
     )
 
 
