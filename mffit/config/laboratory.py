@@ -71,12 +71,8 @@ class LabTable(Table):
     instruments: Annotated[tuple[InstrumentTable, ...], BeforeValidator(list_of_tables)] = ()
 
 
-def lab_warnings(lab: LabTable, today: date) -> tuple[str, ...]:
+def lab_warnings(lab: LabTable, today: date) -> Iterator[str]:
     """Sentences about instruments whose calibration does not cover the measurement, ``today`` if its date is not stated."""
-    return tuple(_uncovered(lab, today))
-
-
-def _uncovered(lab: LabTable, today: date) -> Iterator[str]:
     if lab.measured is not None and lab.measured > today:
         yield f"[lab] measured = {lab.measured} is later than today, {today}; correct the date"
     day = lab.measured or today

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from mffit.config.by_hand import of_command_line
-from mffit.config.models import Column, Config
+from mffit.config.models import Config
 from mffit.config.problems import Keys, known_keys, validated
 from mffit.config.toml_file import TomlKind, read_toml
 from mffit.errors import InputError
@@ -177,25 +177,15 @@ def as_declared(config: Config) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        raise _with_heading(error, config) from None
-
-
-def _with_heading(error: InputError, config: Config) -> InputError:
-    declared = _declared(error, config)
-    if declared is None:
-        return error
-    heading = declared.column or error.column
-    sentence = error.sentence.replace(f'column = "{error.column}"', f'column = "{heading}"')
-    if declared.unit is not None:
-        sentence += f"; {heading} is declared as {declared.unit}"
-    return InputError(sentence, file=error.file, line=error.line, column=heading, key=error.key)
-
-
-def _declared(error: InputError, config: Config) -> Column | None:
-    """The declaration of the column at fault; None without one."""
-    if error.column is None or error.file is None:
-        return None
-    for entry in config.sweep:
-        if Path(entry.file).name == error.file.name and error.column in entry.columns:
-            return entry.columns[error.column]
-    return config.columns.get(error.column)
+        file, column = error.file, error.column
+        if file is None or column is None:
+            raise
+        of_file = [entry.columns for entry in config.sweep if Path(entry.file).name == file.name]
+        declared = next((known[column] for known in (*of_file, config.columns) if column in known), None)
+        if declared is None:
+            raise
+        heading = declared.column or column
+        sentence = error.sentence.replace(f'column = "{column}"', f'column = "{heading}"')
+        if declared.unit is not None:
+            sentence += f"; {heading} is declared as {declared.unit}"
+        raise InputError(sentence, file=file, line=error.line, column=heading, key=error.key) from None

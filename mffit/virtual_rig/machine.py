@@ -6,7 +6,8 @@ All quantities are in ISO-W axes, contact frame.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -56,7 +57,7 @@ Formula = Callable[[float, Settings, Machine], np.ndarray | float]
 
 def _leant(s: Settings, m: Machine) -> np.ndarray:
     """True camber (n,) [rad]."""
-    return np.asarray(s.gamma + _sum(LEANS, s, m))
+    return np.asarray(s.gamma + sum(_effects(LEANS, s, m)))
 
 
 def _kelvin(s: Settings, m: Machine) -> np.ndarray:
@@ -155,7 +156,7 @@ def rolling_slip(machine: Machine, settings: Settings) -> np.ndarray:
 
 def true_alpha(machine: Machine, settings: Settings) -> np.ndarray:
     """True sideslip angle (n,) [rad]: reading, misalignment, compliance and play."""
-    alpha = settings.alpha + _sum(STEERS, settings, machine)
+    alpha = settings.alpha + sum(_effects(STEERS, settings, machine))
 
     def moment(x: np.ndarray) -> np.ndarray:
         return at_the_tyre(machine, settings, x).Mz
@@ -201,7 +202,7 @@ def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Chan
     crown = side * machine.faults["crown_m"] * np.sin(lean)  # towards the centre
     phi_t = side / (machine.faults["path_radius_m"] + settings.outward - crown)
     mounted = turned_on_rim(_scaled(machine, settings), settings.mount)
-    load = settings.Fz * _product(LOADS, settings, machine)
+    load = settings.Fz * math.prod(_effects(LOADS, settings, machine))
     out, state = evaluate(
         mounted,
         load,
@@ -222,13 +223,13 @@ def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Chan
 
 def true_slip(machine: Machine, settings: Settings) -> np.ndarray | float:
     """True longitudinal slip (n,); the number 0 if the wheel is never driven or braked."""
-    slip = settings.kappa + _sum(SLIPS, settings, machine)
+    slip = settings.kappa + sum(_effects(SLIPS, settings, machine))
     return slip if np.any(slip) else 0.0
 
 
 def reported(machine: Machine, settings: Settings, true: Channels) -> Channels:
     """Readings of the load cells for the true forces and moments; the reading of the load is its set-point."""
-    faults, surroundings = machine.faults, _product(SURROUNDINGS, settings, machine)
+    faults, surroundings = machine.faults, math.prod(_effects(SURROUNDINGS, settings, machine))
     seen = faults["gain"] * surroundings * true.Fy
     bent = seen + faults["nonlinearity_per_kN"] * np.sign(seen) * seen**2 / 1000.0
     return true._replace(
@@ -261,15 +262,8 @@ def _scaled(machine: Machine, settings: Settings) -> Any:
     return SimpleNamespace(**values)
 
 
-def _sum(formulae: dict[str, Formula], settings: Settings, machine: Machine) -> np.ndarray | float:
-    return sum(formula(machine.faults[name], settings, machine) for name, formula in formulae.items())
-
-
-def _product(formulae: dict[str, Formula], settings: Settings, machine: Machine) -> np.ndarray | float:
-    out: np.ndarray | float = 1.0
-    for name, formula in formulae.items():
-        out = out * formula(machine.faults[name], settings, machine)
-    return out
+def _effects(formulae: dict[str, Formula], s: Settings, m: Machine) -> Iterator[np.ndarray | float]:
+    return (formula(m.faults[name], s, m) for name, formula in formulae.items())
 
 
 def loaded_radius(p: Mapping[str, Any], at: Any, gamma: Any, omega: Any, pressure: Any) -> Any:

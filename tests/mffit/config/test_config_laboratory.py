@@ -90,7 +90,7 @@ def test_a_mistake_is_one_sentence_with_file_line_and_key(tmp_path, text, key, w
 )  # fmt: skip
 def test_a_calibration_must_cover_the_measurement(tmp_path, measured, today, said):
     lab = config.load(write(tmp_path, in_lab("[lab]", f"[lab]\n{measured}"))).lab
-    found = lab_warnings(lab, today)
+    found = tuple(lab_warnings(lab, today))
     assert len(found) == len(said)
     assert all(words in sentence for words, sentence in zip(said, found, strict=True))
 
