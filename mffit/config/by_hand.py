@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 import sys
 import tomllib
 from collections.abc import Iterable, Mapping
@@ -14,6 +13,7 @@ from pydantic import PlainSerializer, PlainValidator
 from pydantic_core import PydanticCustomError
 
 from mffit.config import quantities as q
+from mffit.config.problems import NUMBER_IN_QUOTES
 from mffit.errors import InputError, meant, shortened
 from tir.parameters import BY_NAME, TABLE, Parameter
 
@@ -36,7 +36,6 @@ FREE_WITHOUT_STAGE = ("PECP1", "Q_RE0")
 """Coefficients that the joint polish frees, though no stage of the fit does."""
 OF_DIRECT_METHOD = ("PECP1", "PECP2")
 """Coefficients that come from the direct method unless ``[spin] pecp1`` is "model"."""
-NUMBER_IN_QUOTES = re.compile(r"\s*[-+]?[\d.]+([eE][-+]?\d+)?\s*")
 HOW = f'write a number to hold it, "{BASE}", or a table such as {{ min = 0.0, max = 1.0 }} or {{ value = 0.5, u = 0.1 }}'
 
 

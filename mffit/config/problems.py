@@ -36,7 +36,7 @@ KINDS = {
 """By pydantic's type of error, what the value should be."""
 
 DATE_IN_QUOTES = re.compile(r"\s*\d{4}-\d\d-\d\d\s*")
-NUMBER_IN_QUOTES = re.compile(r"\s*[-+]?[\d.]+\s*")
+NUMBER_IN_QUOTES = re.compile(r"\s*[-+]?[\d.]+([eE][-+]?\d+)?\s*")
 
 
 class _Mistake(NamedTuple):
