@@ -79,9 +79,10 @@ def reach_of(values: Mapping[str, Any], present: frozenset[str]) -> Reach:
 def conditions(reach: Reach) -> Conditions:
     """A grid over the ranges, closer together at small angles, where the curves bend."""
     slips = float(reach.kappa) * np.array(constants.SLIPS_OF_THE_GRID)
+    share = np.linspace(-1.0, 1.0, int(ANGLES_OF_A_CURVE))
     axes = np.meshgrid(
         loads(reach),
-        _towards_zero(reach.alpha, int(ANGLES_OF_A_CURVE)),
+        reach.alpha * np.sign(share) * np.abs(share) ** 1.5,
         cambers(reach),
         np.unique(np.concatenate([-slips, slips])),
         indexing="ij",
@@ -100,9 +101,3 @@ def cambers(reach: Reach) -> np.ndarray:
     small = min(constants.SMALL_CAMBER.rad, reach.gamma)
     side = np.unique(np.concatenate([np.linspace(0.0, small, n), np.linspace(small, reach.gamma, n)]))
     return np.concatenate([-side[:0:-1], side])
-
-
-def _towards_zero(end: float, n: int) -> np.ndarray:
-    """``n`` values from -end to end, in steps that grow with the distance from zero."""
-    share = np.linspace(-1.0, 1.0, n)
-    return end * np.sign(share) * np.abs(share) ** 1.5

@@ -73,11 +73,6 @@ def excess(
     return value, np.concatenate([np.broadcast_to(gradient(row, by), (Fz.size, len(by))) for row in rows])
 
 
-def exceeding(p: SimpleNamespace, reach: Reach) -> list[CurvatureFactor]:
-    """The curvature factors of the upright wheel that exceed 1 somewhere in the range."""
-    return [factor for factor in FACTORS if np.max(excess(p, [factor], reach)[0]) > 0.0]
-
-
 def held(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
     """The curvature factors that exceed 1 somewhere in the range, with camber or without: largest E, by key without number."""
     largest = {
@@ -125,7 +120,8 @@ def refit(
     The side force comes before the aligning moment, into which it enters.
     """
     found: dict[str, float] = {}
-    curved = exceeding(SimpleNamespace(**values), reach)
+    p = SimpleNamespace(**values)
+    curved = [factor for factor in FACTORS if np.max(excess(p, [factor], reach)[0]) > 0.0]
     for channel, by_camber in FREE.items():
         if not np.any(goal[channel]):  # the old file has no such force, and its coefficients are 0
             continue

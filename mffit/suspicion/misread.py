@@ -17,7 +17,7 @@ from mffit.quantities import CONDITIONS, SIDEWAYS
 from mffit.rig import Simulation
 from mffit.scatter import robust, usual_size
 from mffit.suspicion import constants
-from mffit.suspicion.rereadings import Away, ExplainingMistake, Mistake, certain_mistakes, explaining
+from mffit.suspicion.rereadings import Away, Mistake, certain_mistakes, explaining
 from mffit.suspicion.rule import Outcome, When, rule
 
 
@@ -90,22 +90,20 @@ def misread_sweep(
         candidates = _candidates(part, points, signs, () if gross else [p for p in parts if p is not part])
         best = explaining(candidates, wrong, away, tolerated) if wrong else None
         if best is not None:
-            found.append(_named(part, best, max(wrong.values())))
+            mistake = best.mistake
+            found.append(
+                Misread(
+                    sweep=part.sweep_names[part.sweep[0]],
+                    file=part.files[part.file[0]],
+                    looks=mistake.looks,
+                    column=mistake.column,
+                    remedy=mistake.remedy,
+                    before=max(wrong.values()),
+                    after=best.left,
+                )
+            )
     if len(found) == 1:
         yield found[0]
-
-
-def _named(part: Points, best: ExplainingMistake, before: float) -> Misread:
-    """The record of a sweep with its mistake."""
-    return Misread(
-        sweep=part.sweep_names[part.sweep[0]],
-        file=part.files[part.file[0]],
-        looks=best.mistake.looks,
-        column=best.mistake.column,
-        remedy=best.mistake.remedy,
-        before=before,
-        after=best.left,
-    )
 
 
 def _held(part: Points, channel: str) -> float:
