@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -205,3 +206,16 @@ def test_every_unit_of_a_file_has_the_value_of_its_definition():
                 known = {before + one: x for before, x in prefixes.items() for one in plain[kind]}[word]
                 known = 1e6 if kind == "PRESSURE" and word[0] == "m" else known  # no file states millipascal
             assert value == pytest.approx(known, rel=1e-9), word
+
+
+@pytest.mark.parametrize("unit", sorted({row.unit for row in TABLE} - {"", "-"}))
+def test_a_unit_of_the_table_is_made_of_the_units_of_a_file_as_it_is_written(unit):
+    """A millimetre, kilonewton, gram, millisecond and degree to the powers that the text of the unit has."""
+    words = {"LENGTH": "mm", "FORCE": "kn", "MASS": "g", "TIME": "ms", "ANGLE": "deg"}
+    sizes = {"m": 1e-3, "N": 1e3, "kg": 1e-3, "s": 1e-3, "rad": np.pi / 180.0, "1": 1.0}
+    over, _, under = {"Pa": "N/m2", "Hz": "1/s"}.get(unit, unit).partition("/")
+    expected = 1.0
+    for part, side in ((over, 1), (under, -1)):
+        for base, power in re.findall(r"(1|[A-Za-z]+)(\d?)", part):
+            expected *= sizes[base] ** (side * int(power or 1))
+    assert units.factor(unit, words) == pytest.approx(expected, rel=1e-12)
