@@ -6,13 +6,10 @@ from tir.codegen.program import INPUTS, Switches, called, trace
 from tir.codegen.source import COMMON, FUNCTIONS, SourceDialect, assignments
 from tir.equations.forces import Forces
 
-MATH = {"absolute": "abs", "arctan": "atan", "arccos": "acos", "power": "pow"}
-"""Functions that have another name in JavaScript."""
 JAVASCRIPT = SourceDialect(
     {
         **COMMON,
-        **{name: f"Math.{MATH.get(name, name)}({{}})" for name in (*FUNCTIONS, "absolute")},
-        "power": "Math.pow({}, {})",
+        **{name: f"Math.{COMMON[name]}" for name in (*FUNCTIONS, "absolute")},
         "where": "({} ? {} : {})",
         "both": "({} && {})",
     },

@@ -11,12 +11,11 @@ from typing import Any
 import numpy as np
 
 from tir.codegen.program import INPUTS, Program, Switches, trace
-from tir.codegen.source import FUNCTIONS, conditions, preparation
+from tir.codegen.source import NAMES, conditions, preparation
 
 Run = Callable[..., tuple[float, ...]]
-PYTHON_NAMES = {"arctan": "atan", "arccos": "acos", "power": "pow"}
-MATH = {name: getattr(math, PYTHON_NAMES.get(name, name)) for name in FUNCTIONS}
-NUMPY = {name: getattr(np, name) for name in FUNCTIONS}
+MATH = {given: getattr(math, given) for given in NAMES.values()}
+NUMPY = {given: getattr(np, name) for name, given in NAMES.items()}
 
 
 @cache

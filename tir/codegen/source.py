@@ -13,6 +13,8 @@ from tir.codegen.graph import Node
 from tir.codegen.program import INPUTS, Program, called
 
 FUNCTIONS = ("sqrt", "exp", "sin", "cos", "tan", "arctan", "arccos", "power")
+NAMES = {name: name for name in FUNCTIONS} | {"arctan": "atan", "arccos": "acos", "power": "pow"}
+"""Functions by their names in C, Python and most other languages."""
 COMPARISONS = ("less", "less_equal", "greater", "greater_equal", "both")
 
 
@@ -47,8 +49,8 @@ COMMON = {
     "greater": "({} > {})",
     "greater_equal": "({} >= {})",
     "absolute": "abs({})",
-    **{name: f"{name}({{}})" for name in FUNCTIONS},
-    "power": "power({}, {})",
+    **{name: f"{given}({{}})" for name, given in NAMES.items()},
+    "power": "pow({}, {})",
 }
 """Templates that all languages share."""
 PYTHON = SourceDialect({**COMMON, "where": "({1} if {0} else {2})", "both": "({} and {})"})
@@ -90,7 +92,7 @@ def preparation(program: Program) -> str:
     """Python source of ``prepare(p, <functions>)``: the constants of the program for a tyre, from its values by name."""
     lines, results = assignments(program.per_tyre, program.constants, PYTHON)
     given = [f'{name} = p["{name}"]' for name in program.parameters]
-    return function(f"prepare(p, {', '.join(FUNCTIONS)})", [*given, *lines, _returned(results)])
+    return function(f"prepare(p, {', '.join(NAMES.values())})", [*given, *lines, _returned(results)])
 
 
 def conditions(program: Program, inputs: Sequence[str] = INPUTS) -> str:
