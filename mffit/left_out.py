@@ -1,4 +1,4 @@
-"""Prediction of left-out groups of points to first order, from one linearised fit.
+"""Numbers without a group of points to first order, from one linearised fit, and the choice of further numbers.
 
 No second fit is needed. Let J be the derivatives of a group's residuals r in units of their uncertainty, and C the covariance of
 the fit. Without the group the covariance is A^-1 with A = C^-1 - J^T J, and the numbers change by A^-1 J^T r (Belsley, Kuh and

@@ -55,11 +55,10 @@ class BumpScan(ReadOnlyArrays):
 
         A bump is zero in all other rows. The shapes are whitened without shared changes, the sums of squares with them.
         """
-        out, block, n = [], 256, len(self.bumps)
-        for k, channel in enumerate(self.noise.channels):
-            rows, own = np.flatnonzero(self.noise.used // n == k), self.noise.only(channel)
-            for first in range(0, len(self.regions) if channel in self.spread else 0, block):
-                shapes = own.whiten(self.bumps[:, first : first + block].astype(float))
+        out, block = [], 256
+        for channel in self.spread:
+            for first in range(0, len(self.regions), block):
+                rows, shapes = self.noise.whitened_alone(channel, self.bumps[:, first : first + block])
                 power = np.einsum("ij,ij->j", shapes, shapes) - self.noise.directions.power(rows, shapes)
                 out.append((channel, first, rows, shapes.astype(np.float32), power))
         return out

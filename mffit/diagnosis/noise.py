@@ -189,19 +189,12 @@ class Noise(ReadOnlyArrays):
         """Whitened differences (m,) or (m, k) of the used readings, from readings (c n,) or (c n, k)."""
         return self.directions.less(self._independent(x[self.used]))
 
-    def only(self, channel: str) -> Noise:
-        """The scatter of one channel."""
-        return replace(
-            self,
-            u=self.of_channel(self.u, channel),
-            stated=self.of_channel(self.stated, channel),
-            chain=self.of_channel(self.chain, channel),
-            longer={span: self.of_channel(chain, channel) for span, chain in self.longer.items()},
-            turn=None if self.turn is None else self.of_channel(self.turn, channel),
-            weight=None if self.weight is None else self.of_channel(self.weight, channel),
-            scatter={channel: self.scatter[channel]},
-            shared=None,
-        )
+    def whitened_alone(self, channel: str, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Positions (m,) of a channel's readings among the used ones, and its differences (n, k) whitened for D and M only."""
+        k = self.channels.index(channel)
+        own, errors = self._errors[k]
+        rows = self.used[own]
+        return own, errors.whiten((x[rows - k * len(x)].T / self.u[rows]).T)
 
     def error_of_sum(self, rows: np.ndarray) -> float:
         """Standard error of the sum of some used readings, given by their positions among the used ones."""
