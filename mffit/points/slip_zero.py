@@ -145,9 +145,8 @@ def slip_zero(of: Driven) -> SlipZero | None:
         force = of.Fx / load
     near = np.all(np.isfinite([*of[:-2], force]), axis=0) & (load > constants.UNLOADED * finite_median(load))
     near &= np.abs(force) < constants.NEAR_ZERO
-    some = 0.3 * constants.NEAR_ZERO
-    in_steps = min(np.sum(force[near] > some), np.sum(force[near] < -some)) < constants.FEWEST_POINTS
-    if in_steps and np.sum(np.abs(force[near]) <= some) < constants.FEWEST_POINTS:
+    in_steps = min(np.sum(force[near] > WEAKEST), np.sum(force[near] < -WEAKEST)) < constants.FEWEST_POINTS
+    if in_steps and np.sum(np.abs(force[near]) <= WEAKEST) < constants.FEWEST_POINTS:
         return None
     used = Driven(*(np.asarray(x, dtype=float)[near] for x in of))
     x = force[near]
@@ -160,7 +159,7 @@ def slip_zero(of: Driven) -> SlipZero | None:
     inverse = float(compliance.mean(axis=0) @ solution[k:-1])
     every = np.isfinite(of.kappa) & np.isfinite(force)
     if in_steps:  # too few readings for the slope at zero: take sign and size from the whole curve
-        driven = every & (np.abs(force) > some)
+        driven = every & (np.abs(force) > WEAKEST)
         if not np.any(driven):
             return None
         inverse = float(np.median((of.kappa - _conditions(of, middle) @ found)[driven] / force[driven]))
