@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
 import mffit
@@ -36,12 +34,12 @@ def _overview(view: BuildView, over: str) -> Panel:
         if (c.over, c.load, c.held, c.pressure) == (over, load, 0.0, 250.0) and c.forward and len(c.index) > 8
     )
     x, line = curve.varied(view.points), view.lines[curve]
-    rows = curve.index
+    rows, parts = curve.index, view.build.parts
     data = (
         (x, channel.measured[rows]),
         (line.x, line.raw[channel.name]),
-        (x, channel.odd[rows]),
-        (x, channel.even[rows]),
+        (x, parts.Fy_odd[rows]),
+        (x, parts.Fy_even[rows]),
     )
     return Panel(
         title=curve.condition,
@@ -55,17 +53,20 @@ def _overview(view: BuildView, over: str) -> Panel:
     )
 
 
-def main() -> None:
-    view = view_of(mffit.build(SAMPLE))
-    sheets: dict[str, Callable[[], Sheet]] = {
-        "build": partial(overview, view),
-        "camber_reduction": partial(spin.camber_reduction, view),
-        "alignment": partial(spin.alignment, view),
-        "fit": partial(fit.model_against_points, view, view.channels[0]),
-        "residuals": partial(residuals.residual_maps, view),
+def sheets(view: BuildView) -> dict[str, Sheet]:
+    """The pictures of a build of the sample by name."""
+    return {
+        "build": overview(view),
+        "camber_reduction": spin.camber_reduction(view),
+        "alignment": spin.alignment(view),
+        "fit": fit.model_against_points(view, view.channels[0]),
+        "residuals": residuals.residual_maps(view),
     }
-    for name, sheet in sheets.items():
-        pictures.save(sheet(), HERE / f"{name}.png")
+
+
+def main() -> None:
+    for name, sheet in sheets(view_of(mffit.build(SAMPLE))).items():
+        pictures.save(sheet, HERE / f"{name}.png")
 
 
 if __name__ == "__main__":

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
+import runpy
 from importlib.resources import files
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from mffit.quantities import CHANNELS
 from mffit.report.build import BUILD
+from mffit.report.build_view import view_of
 from mffit.report.compare import COMPARISON
 from mffit.report.diagnosis import DIAGNOSIS
 from mffit.report.fleet import FLEET
@@ -38,3 +41,13 @@ def test_the_documentation_names_every_picture(page):
     written = "".join(path.read_text(encoding="utf-8") for path in DOCS.glob("*.md"))
     missing = [file for name in TABLES[page] if f"`{(file := CHANNEL.sub('_Fy', name))}.png`" not in written]
     assert not missing, f"docs/report.md has no heading for {', '.join(missing)}"
+
+
+def test_the_pictures_of_readme_and_tutorial_can_be_drawn(result):
+    """By the script beside them; each has its panels and data."""
+    made = runpy.run_path(str(DOCS / "images" / "make.py"))["sheets"](view_of(result))
+    for name, sheet in made.items():
+        assert sheet.panels, name
+        assert all(
+            any(np.isfinite(one.columns()["x"]).any() for one in panel.series) for panel in sheet.panels
+        ), name
