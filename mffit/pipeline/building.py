@@ -147,7 +147,6 @@ def _result(
         ),
         trust=trust,
         remains=left,
-        prediction=fitted.prediction,
         missed=missed,
         correction=table,
         made=read.made,

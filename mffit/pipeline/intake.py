@@ -67,8 +67,7 @@ def init_from(
         _check_keys(stated)
         sniffed = sniff(files, unloaded_radius=stated.unloaded_radius, headings=headings)
         stated = _with_those_of_files(stated, sniffed, folder)
-        sniffed, _ = project_of(sniffed, folder, stated)
-        sniffed, text = _as_a_build_reads(sniffed, folder, stated)
+        sniffed, text = _as_a_build_reads(_checked(sniffed, stated), folder, stated)
     return sniffed, written_project(folder, sniffed, text)
 
 
@@ -78,16 +77,7 @@ def project_of(sniffed: Sniffed, folder: Path, stated: Stated) -> tuple[Sniffed,
     Raises InputError if the pressure is unknown, no axes fit, or the recordings look like those of a disc and nothing is stated
     about the path.
     """
-    _check_recordings(sniffed, stated)
-    if stated.disc is None and not stated.belt and (signs := disc_signs(sniffed)):
-        raise InputError(
-            f"the recordings look like those of a disc ({'; '.join(signs)}): give --disc --path-radius M --path-centre "
-            "left|right, or --belt if the path was straight",
-            file=sniffed.recordings[0].path,
-        )
-    if doubt := load_beyond(sniffed, stated.nominal_load):
-        reading = sniffed.reading
-        sniffed = replace(sniffed, reading=reading._replace(warnings=(*reading.warnings, doubt)))
+    sniffed = _checked(sniffed, stated)
     return sniffed, project_text(sniffed, folder, stated)
 
 
@@ -142,9 +132,7 @@ def _as_a_build_reads(sniffed: Sniffed, folder: Path, stated: Stated) -> tuple[S
     first = refusals[0]
     if stated.disc is not None and first.key in ("rig.axes", "rig.path_centre", "rig.force_frame"):
         raise InputError(first.sentence, key="rig.path_centre")
-    reading = sniffed.reading
-    said = f"mffit build refuses these recordings: {first}"
-    found = replace(sniffed, reading=reading._replace(warnings=(*reading.warnings, said)))
+    found = _with_warning(sniffed, f"mffit build refuses these recordings: {first}")
     return found, project_text(sniffed, folder, stated)
 
 
@@ -176,18 +164,15 @@ def _with_those_of_files(stated: Stated, sniffed: Sniffed, folder: Path) -> Stat
     Raises InputError if neither states them.
     """
     found = tyre_found(sniffed, folder)
-    if stated.unloaded_radius is None:
-        stated = stated._replace(unloaded_radius=found.unloaded_radius)
-    if stated.nominal_load is None:
-        stated = stated._replace(nominal_load=found.nominal_load)
-    asked = (
-        (stated.unloaded_radius, "the free radius", "--unloaded-radius M"),
-        (stated.nominal_load, "the nominal load", "--nominal-load N"),
-    )
-    lacking = [(word, option) for value, word, option in asked if value is None]
+    options = {
+        "unloaded_radius": ("the free radius", "--unloaded-radius M"),
+        "nominal_load": ("the nominal load", "--nominal-load N"),
+    }
+    stated = stated._replace(**{k: getattr(found, k) for k in options if getattr(stated, k) is None})
+    lacking = [asked for key, asked in options.items() if getattr(stated, key) is None]
     if lacking:
-        words, options = (" and ".join(column) for column in zip(*lacking, strict=True))
-        raise InputError(f"the recordings do not state {words} of the tyre: give {options}")
+        words, given = (" and ".join(column) for column in zip(*lacking, strict=True))
+        raise InputError(f"the recordings do not state {words} of the tyre: give {given}")
     return stated
 
 
@@ -215,8 +200,8 @@ def _as_options() -> Iterator[None]:
         raise InputError(error.sentence, file=error.file, key=f"--{key.replace('_', '-')}") from None
 
 
-def _check_recordings(sniffed: Sniffed, stated: Stated) -> None:
-    """Refuse recordings from which no project can be made."""
+def _checked(sniffed: Sniffed, stated: Stated) -> Sniffed:
+    """The recordings with the doubts that the statements raise, refused if no project can be made from them."""
     first = sniffed.recordings[0].path
     known = "nominal_pressure" in stated_of_tyre(sniffed) or any(
         "p_kPa" in r.guesses for r in sniffed.recordings
@@ -237,6 +222,19 @@ def _check_recordings(sniffed: Sniffed, stated: Stated) -> None:
             "that into the tyre.toml of `mffit init DIR`",
             file=first,
         )
+    if stated.disc is None and not stated.belt and (signs := disc_signs(sniffed)):
+        raise InputError(
+            f"the recordings look like those of a disc ({'; '.join(signs)}): give --disc --path-radius M --path-centre "
+            "left|right, or --belt if the path was straight",
+            file=first,
+        )
+    doubt = load_beyond(sniffed, stated.nominal_load)
+    return _with_warning(sniffed, doubt) if doubt else sniffed
+
+
+def _with_warning(sniffed: Sniffed, said: str) -> Sniffed:
+    reading = sniffed.reading
+    return replace(sniffed, reading=reading._replace(warnings=(*reading.warnings, said)))
 
 
 def written_project(folder: Path, sniffed: Sniffed, text: str) -> list[Path]:

@@ -48,7 +48,6 @@ class BuildResult(Brief):
     remains: Remains = NOTHING_REMAINS  #: the examination of the residuals
     made: Made = field(default_factory=made_now)
     left_out: tuple[LeftOut, ...] = ()  #: readings that are left out, have less weight or are doubted
-    prediction: Predictor | None = None  #: predicts forces at any conditions
     missed: Mapping[str, MissedAtReadings] = field(default_factory=dict)
     """Model error at the readings, by channel, where it is proven."""
     correction: CorrectionTable | None = None  #: table of the model error, where it is proven
@@ -89,6 +88,11 @@ class BuildResult(Brief):
     def fitted(self) -> str:
         """The use of the file that holds the fitted model."""
         return fitted_use(self.files)
+
+    @property
+    def prediction(self) -> Predictor | None:
+        """Predicts forces at any conditions."""
+        return self.fit.prediction
 
     @property
     def predicting(self) -> tuple[Predictor | None, str]:

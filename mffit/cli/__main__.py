@@ -1,3 +1,0 @@
-from mffit.cli import main
-
-main()
