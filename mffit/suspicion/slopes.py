@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -171,14 +172,9 @@ def _thrust(points: Points) -> float:
     return float((thrust[gamma > 0].mean() + thrust[gamma < 0].mean()) / 2.0)
 
 
-def _sign(slope: str, sign: int, column: str, told: str, looks_at: str, id: str) -> Rule:
-    """The rule that no tyre has a slope of this sign."""
-
-    def find(found: Signatures) -> Iterator[Facts]:
-        if getattr(found, slope).sign == sign:
-            yield {"column": column}
-
-    return Rule(id=id, looks_at=looks_at, outcome=Outcome.CONTRADICTION, sentence=told, find=find)
+def _of_sign(found: Signatures, slope: str, sign: int, column: str) -> Iterator[Facts]:
+    if getattr(found, slope).sign == sign:
+        yield {"column": column}
 
 
 def contradictions(found: Signatures) -> list[str]:
@@ -198,16 +194,22 @@ def turn_slip_inwards(found: Signatures) -> Iterator[Facts]:
 
 
 SIGNS = tuple(
-    _sign(*row)
-    for row in (
-        ("cornering", 1, "alpha_deg", "Fy_N rises with alpha_deg",
-         "Slope of Fy over sideslip, rolling forwards", "force-rises-with-sideslip"),
-        ("camber", 1, "gamma_deg", "Fy_N rises with gamma_deg",
-         "Slope of Fy over camber, rolling forwards", "force-rises-with-camber"),
-        ("aligning", -1, "Mz_Nm", "Mz_Nm falls with alpha_deg",
-         "Slope of Mz over sideslip, rolling forwards", "moment-falls-with-sideslip"),
-        ("backward", -1, "alpha_deg", "Fy_N falls with alpha_deg in backward runs",
-         "Slope of Fy over sideslip, rolling backwards", "force-falls-with-sideslip-backwards"),
+    Rule(
+        id=id,
+        looks_at=looks_at,
+        outcome=Outcome.CONTRADICTION,
+        sentence=sentence,
+        find=partial(_of_sign, slope=slope, sign=sign, column=column),
+    )
+    for id, slope, sign, column, sentence, looks_at in (
+        ("force-rises-with-sideslip", "cornering", 1, "alpha_deg", "Fy_N rises with alpha_deg",
+         "Slope of Fy over sideslip, rolling forwards"),
+        ("force-rises-with-camber", "camber", 1, "gamma_deg", "Fy_N rises with gamma_deg",
+         "Slope of Fy over camber, rolling forwards"),
+        ("moment-falls-with-sideslip", "aligning", -1, "Mz_Nm", "Mz_Nm falls with alpha_deg",
+         "Slope of Mz over sideslip, rolling forwards"),
+        ("force-falls-with-sideslip-backwards", "backward", -1, "alpha_deg",
+         "Fy_N falls with alpha_deg in backward runs", "Slope of Fy over sideslip, rolling backwards"),
     )
 )  # fmt: skip
 NO_TYRE = (*SIGNS, turn_slip_inwards)

@@ -253,6 +253,7 @@ def above_noise(fit: FinishedFit) -> Iterator[Facts]:
 )
 def sweep_above_noise(fit: FinishedFit) -> Iterator[Facts]:
     """Misfit of a sweep that contradicts all others over its stated noise, or over its scatter and the median sweep's misfit."""
+    said = not all(map(above_noise.only_asks, above_noise.find(fit)))  # with the cause
     for name in fit.used:
         seen = _by_sweep(fit, name)
         off = {
@@ -270,7 +271,7 @@ def sweep_above_noise(fit: FinishedFit) -> Iterator[Facts]:
                 "ratio": off[worst],
                 "noise": "its stated uncertainty" if worst in seen else SCATTER,
                 "others": f" (also {', '.join(others[:NAMED_IN_SENTENCE])})" if others else "",
-                "cause": "" if _blamed_by(above_noise, fit) else f"; {_cause(fit)}",
+                "cause": "" if said else f"; {_cause(fit)}",
             }
 
 
@@ -537,11 +538,11 @@ def judge(found: JudgedMeasurement) -> Trust:
     return Trust(reasons, doubts, over_noise=found.over_noise, limited=limited)
 
 
-OF_READINGS = (above_noise, sweep_above_noise, unexplained)
-"""Rules that blame readings."""
 OF_TRUST = (
     not_ended,
-    *OF_READINGS,
+    above_noise,
+    sweep_above_noise,
+    unexplained,
     limit_broken,
     zeros_contradict,
     drift_between_sweeps,
@@ -556,11 +557,6 @@ OF_TRUST = (
     whole_sweeps,
 )
 """All rules of trust, the most serious first."""
-
-
-def _blamed_by(rule: Rule, fit: FinishedFit) -> bool:
-    """Whether a rule finds a reason, not only a doubt."""
-    return not all(map(rule.only_asks, rule.find(fit)))
 
 
 def _noise_is_stated(fit: FinishedFit) -> bool:
