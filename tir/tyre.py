@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Any, Never, Protocol, Self, TypeVar, Unpack, o
 from tir import calls
 from tir.codegen.arrays import array_function
 from tir.codegen.program import Switches
+from tir.constants import NAMES_IN_A_SENTENCE
 from tir.document import Document, encoded, read_document
 from tir.equations.forces import Forces, State
-from tir.errors import Problem, counted
+from tir.errors import Problem, counted, some
 from tir.exporting import exported
 from tir.mode import SwitchOptions
 from tir.parameters import BY_NAME, TABLE
@@ -132,8 +133,9 @@ class Tyre(TyreRecord):
         head = f"Tyre {name}, FNOMIN {self['FNOMIN']:g} N, "
         lines = [f"{head}UNLOADED_RADIUS {self['UNLOADED_RADIUS']:g} m; {given}"]
         if origins:
-            lines.append("origins: " + ", ".join(f"{n} {word}" for word, n in origins.most_common(6)))
-        lines += [f"{name} = {q.value:.6g} +- {q.u:.2g} {q.unit}" for name, q in [*self.measured.items()][:6]]
+            lines.append("origins: " + some([f"{n} {word}" for word, n in origins.most_common()]))
+        shown = [*self.measured.items()][:NAMES_IN_A_SENTENCE]
+        lines += [f"{name} = {q.value:.6g} +- {q.u:.2g} {q.unit}" for name, q in shown]
         if self.on_reading:
             lines.append(f"{counted(len(self.on_reading), 'problem')} on reading, see tyre.problems")
         return "<" + "\n ".join(lines) + ">"

@@ -22,9 +22,8 @@ class LookupTable:
     heading: str  #: of the values, with their unit: ``Fy_N``
     grid: Grid  #: in degrees, N, Nm
     held: Mapping[str, float]  #: the other conditions that tables can have as axes
-    slope: (
-        tuple[float, float] | None
-    )  #: largest relative error found of the slope at zero slip, and its load [N]
+    slope: tuple[float, float] | None
+    """Largest relative error found of the slope at zero slip, and its load [N]."""
 
     @property
     def sentence(self) -> str:

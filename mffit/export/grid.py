@@ -66,7 +66,7 @@ def grid_of(function: Function, ranges: Ranges, goal: float) -> Grid:
         missed = found[-1].error / (goal * constants.TABLE_RESERVE)
         if 0.75 < missed <= 1.0 or (full and missed > 1.0):
             break
-        share *= 0.9 / max(missed, 0.1)
+        share *= constants.TABLE_RESERVE / max(missed, 0.1)
     good = [grid for grid in found if grid.error <= goal * constants.TABLE_RESERVE]
     return min(good, key=lambda grid: grid.values.size) if good else min(found, key=lambda grid: grid.error)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 import subprocess
 import sys
 from functools import cache
@@ -505,6 +506,15 @@ def test_a_called_tyre_can_be_pickled(tyre):
 
 def test_the_name_of_a_tyre_fits_a_screen(tyre):
     noted = tyre.annotate(status=dict.fromkeys(tyre.values, "fitted +- 1"))
+    many = {f"m{i}": tir.Quantity(float(i), 0.1, "N") for i in range(9)}
+    assert re.findall(r"m\d(?= = )", repr(noted.annotate(measured=many))) == [
+        "m0",
+        "m1",
+        "m2",
+        "m3",
+        "m4",
+        "m5",
+    ]
     assert len(repr(noted)) < 400
     assert "FNOMIN" in repr(noted)
     assert f"{len(tyre.values)} fitted" in repr(noted)
