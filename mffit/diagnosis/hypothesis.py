@@ -69,8 +69,3 @@ class Hypothesis(ReadOnlyArrays):
         """The fitted numbers of some of the effects."""
         names = {name for effect in effects for name in effect.parameters}
         return {name: value for name, value in self.numbers.items() if name in names}
-
-
-def outside(axes: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Whitened changes (m,) or (m, k) less their projection on orthonormal axes."""
-    return x - axes @ (axes.T @ x)

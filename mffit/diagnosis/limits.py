@@ -9,7 +9,7 @@ import numpy as np
 
 from mffit.as_json import keys
 from mffit.diagnosis import constants
-from mffit.diagnosis.hypothesis import Hypothesis, outside
+from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.effects import Effect
 from mffit.linearised.gaussian import Informed
@@ -41,7 +41,8 @@ def limits(
     for effect, groups in problem.columns(chosen.state, others).items():
         sizes = []
         for columns in groups:
-            white = outside(axes, problem.noise.whiten(columns[:, np.any(columns != 0.0, axis=0)]))
+            white = problem.noise.whiten(columns[:, np.any(columns != 0.0, axis=0)])
+            white = white - axes @ (axes.T @ white)  # what the numbers of the chosen effects cannot follow
             found = Informed.of_rows(white, chosen.residual)
             sizes.append(rms(np.abs(found.mean) + constants.TWO_SIGMA * found.u))
         # An effect that is even in its number is tested from several starts; the most sensitive one counts.
