@@ -10,7 +10,9 @@ import pytest
 
 import tir
 from tir.codegen.program import INPUTS
+from tir.derivatives import gradient, traced
 from tir.evaluate import evaluate
+from tir.outputs import outputs_of
 
 VECTORS = Path(__file__).parent / "vectors"
 PAGE = Path(__file__).parents[2] / "docs" / "export.md"
@@ -151,3 +153,7 @@ def test_in_torch_it_is_the_tyre_with_derivatives(tyre):
     assert_near([x.detach().numpy() for x in found], tyre(*conditions(), turn_slip=True))
     found.Fy.sum().backward()
     assert all(bool(torch.isfinite(x.grad).all()) for x in rows[:4])
+    ordinary = conditions()
+    at = traced(dict(zip(INPUTS, ordinary, strict=True)))
+    (Fy,) = outputs_of(("Fy",), tyre.p, at, turn_slip=True)
+    assert_near([x.grad.numpy() for x in rows[1:4]], gradient(Fy, [*at.values()])[:, 1:4].T)
