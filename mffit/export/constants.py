@@ -28,4 +28,3 @@ TABLE_CONDITIONS = Count(
     "Random conditions at which a table is tested; as many are in the middle of cells and in the worst cells.",
 )
 TABLE_WORST_CELLS = Count(100, "-", "Cells of a table that are tested again, because they miss most.")
-TABLE_DIGITS = Count(6, "-", "Digits of values and nodes: rounding is far below the error of interpolation.")

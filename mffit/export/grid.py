@@ -169,6 +169,6 @@ def _nearest_zero(low: float, high: float) -> float:
 
 
 def _rounded(values: np.ndarray, size: float) -> np.ndarray:
-    """Values with as many digits as the size needs."""
-    digits = int(constants.TABLE_DIGITS) - (math.floor(math.log10(size)) + 1 if size > 0.0 else 0)
+    """Values with as many digits as single precision has for the size, in which programs may hold a table."""
+    digits = np.finfo(np.float32).precision - (math.floor(math.log10(size)) + 1 if size > 0.0 else 0)
     return np.round(values, digits) + 0.0
