@@ -6,28 +6,6 @@ from tir.constant import Count, Real, Series
 
 # Weights
 HUBER_THRESHOLD = Real(4.0, "-", "Residuals beyond this many robust standard deviations lose weight (Huber).")
-OUTLIER_NEIGHBOURS = Series(
-    (-3, -2, -1, 1, 2, 3), "-", "Offsets of the rows with which a reading is compared."
-)
-SIZES_OF_A_MISS = Series(
-    (0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0),
-    "-",
-    "Sizes of a smooth miss that are tried, over the core of the residuals: a formula misses most at the ends of sweeps.",
-)
-LENGTHS_OF_A_MISS = Series(
-    (0.02, 0.05, 0.1, 0.2, 0.4, 1.0),
-    "-",
-    "Its lengths that are tried, over the tested range of what a sweep moves.",
-)
-GAIN_OF_OWN_MISS = Real(
-    6.0, "-", "Gain of log likelihood by which one sweep has a size and a length of its own."
-)
-READINGS_OF_A_LENGTH = Count(2000, "-", "Readings of a channel by which size and length are found.")
-TAILS_OF_A_MISS = Real(
-    2.0,
-    "-",
-    "Half of Student's degrees of freedom plus one, with which they are found: outliers count little.",
-)
 NOMINAL_NOISE_SHARE = Real(0.01, "-", "Standard uncertainty over the range of a channel that states none.")
 
 # What the points determine

@@ -86,7 +86,7 @@ def fit(
         {e.name: e.undisturbed for e in BESIDE if e.name in fitted.rig}
     )
     readings, best = (one.readings(points, problem.channels) for one in (delivered, full.simulation))
-    outlying = outliers(points, problem.sigma, full.problem.sigma, best)
+    outlying = outliers(points, problem.sigma, found.stated.sigma, best)
     at_turns = full.problem.turning()
 
     progress(DERIVING)
@@ -176,10 +176,10 @@ def _fitted_and_judged(
 
     def refit(without: np.ndarray) -> FittedModel:
         others = np.setdiff1d(np.arange(len(problem.points)), without)
-        fitted = refitted(found.full, replace(problem, simulation=found.full.simulation).select(others))
+        fitted = refitted(found.full, replace(found.stated, simulation=found.full.simulation).select(others))
         sigma = {name: weights.copy() for name, weights in found.full.problem.sigma.items()}
         for name, weights in sigma.items():
-            weights[without] = problem.sigma[name][without]
+            weights[without] = found.stated.sigma[name][without]
         return FittedModel(
             fitted.simulation, left_by(fitted, replace(found.full.problem, sigma=sigma), without, near=left)
         )

@@ -11,7 +11,7 @@ import numpy as np
 
 from mffit.errors import InputError
 from mffit.fit import constants
-from mffit.fit.fitted import Fitted, left_by
+from mffit.fit.fitted import Fitted
 from mffit.fit.plan import FitPlan
 from mffit.fit.problem import FitProblem
 from mffit.fit.same_curve import with_expected_signs
@@ -32,7 +32,7 @@ def first_fit(problem: FitProblem, start: Mapping[str, float], plan: FitPlan) ->
 
     The first pass frees only coefficients of the upright wheel on a straight path, the second all of them. With every number
     free at once, a search can end with a curvature factor at its limit. Both passes use the weights at the starting values:
-    with weights from the first pass, effects of camber and spin would count as outliers.
+    those from the first pass would be small wherever camber and spin act.
     """
     _require_enough_points(problem.points, plan.free)
     problem = problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)})
@@ -52,7 +52,7 @@ def first_fit(problem: FitProblem, start: Mapping[str, float], plan: FitPlan) ->
 def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     """The joint fit, with uncertainties from the quadratic form around the solution.
 
-    Weights are balanced between the channels and reduced for outliers. ``stated`` is near the solution and has the stated
+    Weights are balanced between the channels and reduced far from the model. ``stated`` is near the solution and has the stated
     weights; readings without a stated uncertainty are assigned the scatter of their misfit.
     """
     near = _approached(stated, plan)
@@ -63,17 +63,16 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
 
 
 def with_known_zeros(
-    fitted: Fitted, stated: FitProblem, plan: FitPlan
-) -> tuple[Fitted, FitPlan, LinearisedFit]:
-    """The fit with zeros of a flat track held at their estimates, its plan, and the linear model of the first fit's residuals.
+    fitted: Fitted, stated: FitProblem, plan: FitPlan, left: LinearisedFit
+) -> tuple[Fitted, FitPlan]:
+    """The fit with zeros of a flat track held at their estimates, and its plan; ``left`` is the model of the residuals.
 
     One set-up cannot separate a zero from an asymmetry that the formula misses: a free zero absorbs the asymmetry, tens of
     standard uncertainties away from the readings at zero slip. The zeros are therefore estimated together with the model error.
     If no model error is proven, the fit and the plan are returned unchanged.
     """
-    left = left_by(fitted)
     if not any(channel.is_proven for channel in left.channels.values()):
-        return fitted, plan, left
+        return fitted, plan
     found = left.zeros
     spread = {n.name: n.spread for n in plan.rig if n.name in found}
     # Uncertainty with fixed coefficients, plus that caused by the coefficients, but at most the declared one.
@@ -83,7 +82,7 @@ def with_known_zeros(
     )
     here = replace(stated, simulation=fitted.simulation)
     values = {name: fitted.problem.value(name) + change for name, (change, _) in found.items()}
-    return polish(here.with_values(values), plan), plan, left
+    return polish(here.with_values(values), plan), plan
 
 
 def refitted(fitted: Fitted, stated: FitProblem) -> Fitted:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -19,7 +19,6 @@ from mffit.fit.rig.rig_numbers import known_faults, known_zeros
 from mffit.fit.second_hand import by_force_read
 from mffit.fit.wheel.rolling import effective_radius
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, condensed
-from mffit.linearised.inputs import places
 from mffit.measured import Measured, RadiusReading, radius_readings
 from mffit.points import Points
 from mffit.points.noise import estimated_noise, stating
@@ -42,15 +41,11 @@ class FitProblem(ReadOnlyArrays):
     envelope: Envelope | None = None  #: ranges over which the physical limits must hold
     radii: tuple[RadiusReading, ...] = ()  #: measured effective radii, which count as data
     speed: float = 1.0  #: at which the radii were measured [m/s]
-    nominal: Mapping[str, np.ndarray] = field(default_factory=dict)
-    """By channel, nominal uncertainty over ``sigma`` (n,) where ``sigma`` was estimated from the misfit: an outlier must be far
-    away in units of both."""
 
     def select(self, index: np.ndarray) -> FitProblem:
         """The problem restricted to the points with these indices (m,)."""
         sigma = {name: u[index] for name, u in self.sigma.items()}
-        nominal = {name: share[index] for name, share in self.nominal.items()}
-        return replace(self, points=self.points.select(index), sigma=sigma, nominal=nominal)
+        return replace(self, points=self.points.select(index), sigma=sigma)
 
     def thinned(self, stride: int) -> FitProblem:
         """The problem with every ``stride``-th point, each counted ``stride`` times so that priors keep their relative weight."""
@@ -79,10 +74,9 @@ class FitProblem(ReadOnlyArrays):
         their sweep where it turns back are weighted by their own scatter.
         """
         sigma, misfit = {}, self.misfit()
-        place = places(self.points)
         for name, turning in self.turning(misfit).items():
-            z, least = misfit[name], self.nominal.get(name, np.ones_like(misfit[name]))
-            factor = weights.enlarged(np.where(turning, 0.0, z), self.points.sweep, place, least)
+            z = misfit[name]
+            factor = weights.enlarged(np.where(turning, 0.0, z))
             if np.any(turning):
                 factor = np.where(turning, factor * max(rms(z[turning]) / rms(z[~turning]), 1.0), factor)
             sigma[name] = self.sigma[name] * factor
@@ -102,7 +96,7 @@ class FitProblem(ReadOnlyArrays):
 
         The scatter of neighbouring readings is the lower limit, because a fit absorbs some of the noise.
         """
-        readings, sigma, nominal = self.readings(), dict(self.sigma), dict(self.nominal)
+        readings, sigma = self.readings(), dict(self.sigma)
         neighbours = estimated_noise(self.points, readings)
         for name, z in self.misfit(readings).items():
             used = self._used(name)
@@ -111,11 +105,9 @@ class FitProblem(ReadOnlyArrays):
                 ASSUMED_NOISE_SHARE * rms(self.points.channel(name)[used]), np.nan_to_num(neighbours[name])
             )
             scatter = np.maximum(weights.robust_scale(z[silent]) * sigma[name][silent], least)
-            share = np.ones(len(z))
-            share[silent] = np.minimum(scatter / sigma[name][silent], 1.0)
-            sigma[name] = share * sigma[name]
-            nominal[name] = nominal.get(name, 1.0) / share
-        return replace(self, sigma=sigma, nominal=nominal)
+            sigma[name] = sigma[name].copy()
+            sigma[name][silent] = np.minimum(scatter, sigma[name][silent])
+        return replace(self, sigma=sigma)
 
     @property
     def channels(self) -> tuple[str, ...]:

@@ -165,9 +165,3 @@ def along(points: Points, inputs: tuple[Input, ...]) -> np.ndarray:
         if name in by_name:
             out[rows] = (getattr(points, name)[rows] - by_name[name].lower) / by_name[name].width
     return out
-
-
-def places(points: Points) -> np.ndarray:
-    """The settings (n, d) that vary, over their tested ranges."""
-    inputs = tuple(one for one in inputs_of(points) if one.name in LEVELS)
-    return np.asarray(settings_of(points, inputs) / [one.width for one in inputs])

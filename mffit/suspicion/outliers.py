@@ -87,7 +87,7 @@ def outliers_sentence(found: Sequence[Outlier]) -> str:
 OUTLYING = Rule(
     id="outlying-reading",
     when=When.AFTER,
-    looks_at="Residual, and its distance from the neighbours' residuals in the sweep; the weights of the fit have the limits",
+    looks_at="Residual, and its prediction from all other readings, after the fit",
     outcome=Outcome.LEFT_OUT,
     sentence="readings that do not fit their sweep have no weight ({number}): {named}; correct or remove what is wrong",
     find=outliers,

@@ -12,6 +12,7 @@ from mffit.fit.coverage import UNSEEN
 from mffit.fit.fitted import Fitted, left_by
 from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, choose
 from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
+from mffit.fit.outlying import without_outliers
 from mffit.fit.plan import FitPlan
 from mffit.fit.polish import first_fit, polish, with_known_zeros
 from mffit.fit.problem import FitProblem
@@ -28,7 +29,8 @@ class NuisanceFit:
     full: Fitted  #: fit with every modelled influence
     choice: NuisanceChoice
     plan: FitPlan  #: of the free and the held numbers, but for the influences
-    left: LinearisedFit | None = None  #: linear model of the residuals of a similar fit, if computed
+    stated: FitProblem  #: with stated weights, none for outliers
+    left: LinearisedFit  #: linear model of the residuals of a similar fit
 
     @property
     def at_temperature(self) -> bool:
@@ -39,27 +41,32 @@ class NuisanceFit:
 def fit_with_nuisances(
     config: Config, problem: FitProblem, start: Mapping[str, float], plan: FitPlan, progress: Progress
 ) -> NuisanceFit:
-    """The first fit, then the choice of influences, then the joint fit with the chosen ones."""
+    """The first fit without outliers, then the choice of influences, then the joint fit with the chosen ones."""
     progress(FITTING)
-    fitted, left = first_fit(problem, start, plan), None
+    fitted, problem, left = without_outliers(first_fit(problem, start, plan), problem)
     one_mount = len(np.unique(problem.points.mount)) < 2
     if not config.rig.on_disc and len(problem.points.used_setups) < 2 and one_mount:
-        fitted, plan, left = with_known_zeros(fitted, problem, plan)
-    found = replace(_with_influences(config, problem, plan, fitted, progress), left=left)
+        fitted, plan = with_known_zeros(fitted, problem, plan, left)
     unseen = plan.asymmetries if problem.points.one_sided else []
+    found = _with_influences(config, problem, plan, fitted, left, progress)
     if not unseen:
         return found
-    left = left_by(found.full)
+    left = left_by(found.full, near=left)
     if not any(channel.is_proven for channel in left.channels.values()):
         return replace(found, left=left)
     plan = plan.holding(unseen, UNSEEN)
     symmetric = {name: plan.expected.get(name, problem.value(name)) for name in unseen}
     begin = first_fit(problem.with_values(symmetric), {**start, **symmetric}, plan)
-    return _with_influences(config, problem, plan, begin, progress)
+    return _with_influences(config, problem, plan, begin, left, progress)
 
 
 def _with_influences(
-    config: Config, problem: FitProblem, plan: FitPlan, fitted: Fitted, progress: Progress
+    config: Config,
+    problem: FitProblem,
+    plan: FitPlan,
+    fitted: Fitted,
+    left: LinearisedFit,
+    progress: Progress,
 ) -> NuisanceFit:
     """The fit with the chosen influences, and the ``fitted`` one without them."""
     choice = choose(config, fitted)
@@ -67,11 +74,11 @@ def _with_influences(
         progress(f"{FITTING_AGAIN} {', '.join(nuisance.name for nuisance in choice.modelled)}")
     full = _polished(config, problem, plan, choice, choice.modelled, fitted, choice.near.problem.simulation)
     if not any(nuisance.key == TEMPERATURE for nuisance in choice.modelled):
-        return NuisanceFit(full, full, choice, plan)
+        return NuisanceFit(full, full, choice, plan, problem, left)
     # Random effects of the runs would absorb the usual warming, which the plain file's coefficients are to contain.
     others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
     plain = _polished(config, problem, plan, choice, others, fitted)
-    return NuisanceFit(plain, full, choice, plan)
+    return NuisanceFit(plain, full, choice, plan, problem, left)
 
 
 def _polished(
