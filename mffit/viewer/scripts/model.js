@@ -409,6 +409,15 @@ export function extent(shown) {
   }
   return [x0, x1, y0, y1];
 }
+// Whether a curve passes through a box of the picture.
+export function crosses(curve, [left, top, right, bottom], X, Y) {
+  for (let k = 2; k < curve.length; k += 2) {
+    const [x0, x1] = [X(curve[k - 2]), X(curve[k])], [y0, y1] = [Y(curve[k - 1]), Y(curve[k + 1])];
+    if (Math.max(x0, x1) < left || Math.min(x0, x1) > right) continue;
+    if (Math.max(y0, y1) > top && Math.min(y0, y1) < bottom) return true;
+  }
+  return false;
+}
 // The points of a picture in a rectangle of its units.
 export function within(shown, x0, x1, y0, y1) {
   const {px, py} = shown, found = [];

@@ -2,9 +2,9 @@
 // of them.
 import {BOTTOM, LETTER, RIGHT, TOP, axes, frameOf, over, penOf, placeOf, ring, stroke, theme} from "./axes.js";
 import {
-  MOST_MOVED, RESIDUAL, bandOf, beforeModels, changed, channels, columns, csvOf, curvePoints, dragging, extent, facet,
-  fitModels, fixedCurve, hooks, isMoved, left, misfit, misfits, models, placed, project, quantity, state, version,
-  visible,
+  MOST_MOVED, RESIDUAL, bandOf, beforeModels, changed, channels, columns, crosses, csvOf, curvePoints, dragging,
+  extent, facet, fitModels, fixedCurve, hooks, isMoved, left, misfit, misfits, models, placed, project, quantity,
+  state, version, visible,
 } from "./model.js";
 import {written} from "./text.js";
 
@@ -222,15 +222,6 @@ function labels(pen, typical, lines, {X, Y, start, width, height}) {
     taken.push(best.own);
     over(pen, words[level], best.x, best.y, palette[level]);
   }
-}
-// Whether a curve passes through a box of the picture.
-function crosses(curve, [left, top, right, bottom], X, Y) {
-  for (let k = 2; k < curve.length; k += 2) {
-    const [x0, x1] = [X(curve[k - 2]), X(curve[k])], [y0, y1] = [Y(curve[k - 1]), Y(curve[k + 1])];
-    if (Math.max(x0, x1) < left || Math.min(x0, x1) > right) continue;
-    if (Math.max(y0, y1) > top && Math.min(y0, y1) < bottom) return true;
-  }
-  return false;
 }
 // The same points in every picture: those chosen by a click, and the one under the pointer. Many are inked as pixels
 // instead.

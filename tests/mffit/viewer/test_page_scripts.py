@@ -332,6 +332,21 @@ def test_a_picture_is_saved_as_its_numbers(engine, result):
     assert order == sorted(order)
 
 
+@pytest.mark.parametrize(
+    ("curve", "passes"),
+    [
+        ([0, 0, 10, 10], True),  # through the middle, no point of it inside
+        ([0, 6, 10, 6], True),
+        ([0, 0, 10, 2], False),
+        ([0, 6, 3, 6], False),  # ends before
+        ([7, 0, 7, 10], False),
+    ],
+)
+def test_a_label_is_crossed_by_the_curves_that_pass_through_its_box(engine, curve, passes):
+    """Left, top, right and bottom 4, 4, 6, 8, in pixels as the curve."""
+    assert engine(f"crosses({curve}, [4, 4, 6, 8], x => x, y => y)") == passes
+
+
 def test_lines_mean_the_same_in_a_page_and_in_python(engine, data):
     """What a page marks as left out by an entry of tyre.toml, and the entry that it writes for chosen points."""
     file, line, last = (np.array(engine(f"columns.{name}")) for name in ("file", "line", "last"))
