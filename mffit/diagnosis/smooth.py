@@ -188,8 +188,8 @@ class BesideColumns(NamedTuple):
         )
         x = search.most_probable()
         gain = search.log_probability(x) - self.evidence({})[0]
-        # The next power of two, so that a few covariances serve many hypotheses.
-        return Smooth(amplitude(np.log(2.0) * np.round(x / np.log(2.0))), gain)
+        # To one digit, so that a few covariances serve many hypotheses.
+        return Smooth({name: float(f"{size:.1g}") for name, size in amplitude(x).items()}, gain)
 
 
 @dataclass(frozen=True, eq=False)
