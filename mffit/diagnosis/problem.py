@@ -200,9 +200,9 @@ class DiagnosisProblem:
         beside = self._beside_or_nothing
         numbers = [number(free, before.numbers, self.start, self.points) for free in moving(before.effects)]
         model, now = beside.structure.beside(*self._at_priors(before, numbers)), beside.amplitude
-        (known, _), alone, out = model.evidence(now), beside.scatter.alone(), []
+        known, alone, out = model.evidence(now), beside.scatter.alone(), []
         for effect, groups in columns.items():
-            found = max(model.with_columns(alone.whiten(one)).evidence(now)[0] for one in groups)
+            found = max(model.with_columns(alone.whiten(one)).evidence(now) for one in groups)
             out.append((effect, max(found - known, 0.0)))
         return sorted(out, key=lambda row: -row[1])
 
@@ -280,7 +280,8 @@ class DiagnosisProblem:
         model, now = self.beside.structure.beside(columns, residual), self.beside.amplitude
         found, alone = model.best(), fitted.log_evidence
         if now:
-            alone -= self.beside.half_log_determinant + model.evidence(now)[0] - model.evidence({})[0]
+            alone -= self.beside.half_log_determinant
+            alone -= model.evidence(now) + model.improbable(now) - model.evidence({})
         value = float(np.logaddexp(alone, alone + found.gain - constants.STRUCTURE_EVIDENCE))
         return replace(fitted, log_evidence=value, smooth=found, alone=alone)
 

@@ -19,17 +19,20 @@ from mffit.diagnosis.noise import MemorySpan, Noise, RunOffsets, Scatter
 from mffit.diagnosis.tails import beyond_weights, heavy_tails, weights
 from mffit.linearised.chained import Chained, Memory, chains_of
 from mffit.linearised.search import (
-    LARGEST,
-    SIZE,
     ParameterSearch,
     SearchedParameter,
     arcsine,
+    half_cauchy,
     normal,
     share_of,
     uniform,
 )
 from mffit.scatter import rms
 from tir.frozen import ReadOnlyArrays
+
+LARGEST = math.log(1e4)
+"""Bound of the coordinates, which are log odds or logarithms of sizes."""
+
 
 LARGEST_MEMORY = math.log(constants.LARGEST_MEMORY / (1.0 - constants.LARGEST_MEMORY))
 """Upper bound of the log odds of an autocorrelation."""
@@ -58,17 +61,18 @@ class Description:
     @property
     def parameters(self) -> dict[str, SearchedParameter]:
         """The parameters: logarithms of sizes over the usual ones, and log odds of shares."""
-        scale = SIZE._replace(prior=normal(0.0, math.log(constants.STATED_NOISE_FACTOR)))
-        found = {"scale": scale, "smooth": SIZE}
+        size = SearchedParameter(0.0, -LARGEST, LARGEST, half_cauchy)
+        scale = size._replace(prior=normal(0.0, math.log(constants.STATED_NOISE_FACTOR)))
+        found = {"scale": scale, "smooth": size}
         if self.growth:
-            found["growth"] = SIZE
+            found["growth"] = size
         if self.offsets:
-            found["offsets"] = SIZE
+            found["offsets"] = size
         if self.span is not None:
             start = float(constants.USUAL_LOG_ODDS_OF_MEMORY)
             found["correlation"] = SearchedParameter(start, -LARGEST, LARGEST_MEMORY, arcsine)
         if self.independent:
-            found["independent"] = SIZE._replace(prior=uniform)
+            found["independent"] = size._replace(prior=uniform)
         return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -14,12 +15,14 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.noise import Noise
 from mffit.linearised.gaussian import Informed
 from mffit.linearised.inputs import Input
-from mffit.linearised.search import SIZE, ParameterSearch
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
 from mffit.rig import Readings
 from mffit.scatter import rms
 from tir.frozen import ReadOnlyArrays
+
+SMALLEST, LARGEST = constants.SMOOTH_AMPLITUDES
+AMPLITUDES = np.geomspace(SMALLEST, LARGEST, constants.SMOOTH_AMPLITUDES_TRIED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +30,7 @@ class Smooth:
     """The smooth structure that fits a residual best."""
 
     amplitude: dict[str, float]
-    """By channel, rms over the rms of the readings; no entry without structure."""
+    """By channel, rms over the rms of the readings; 0 or no entry without structure."""
     gain: float  #: gain of log evidence
 
     @property
@@ -157,39 +160,37 @@ class BesideColumns(NamedTuple):
             ),
         )
 
-    def evidence(self, amplitude: Mapping[str, float]) -> tuple[float, np.ndarray]:
-        """Log evidence for given amplitudes by channel, up to a constant, and its derivatives (c,) by their logarithms."""
-        products, log, sizes = self.products, 0.0, []
+    def evidence(self, amplitude: Mapping[str, float]) -> float:
+        """Log evidence with the columns and with structure of given amplitudes by channel, up to a constant."""
+        products, log = self.products, self.improbable(amplitude)
         for name, along, one in zip(
             self.structure.channels, self.along, self.structure.directions, strict=True
         ):
-            sizes.append(size := amplitude.get(name, 0.0) ** 2 * one.variance)
-            products = products - along.T @ ((size / (1.0 + size))[:, None] * along)
-            log += 0.5 * float(np.sum(np.log1p(size)))
+            if amplitude.get(name):
+                size = amplitude[name] ** 2 * one.variance
+                products = products - along.T @ ((size / (1.0 + size))[:, None] * along)
+                log += 0.5 * float(np.sum(np.log1p(size)))
         r = self.structure.shared.shape[1]  # index of the residual
         others = np.delete(np.arange(len(products)), r)
         found = Informed.by(products[np.ix_(others, others)], products[others, r])
-        left = np.insert(-found.mean, r, 1.0)  # the residual less what the other columns explain
-        slopes = []
-        for along, size in zip(self.along, sizes, strict=True):
-            power = (along @ left) ** 2 + np.sum((along[:, others] @ found.root) ** 2, axis=1)
-            slopes.append(np.sum(size / (1.0 + size) * (power / (1.0 + size) - 1.0)))
-        return found.gain - 0.5 * float(products[r, r]) - log, np.array(slopes)
+        return found.gain - 0.5 * float(products[r, r]) - log
+
+    def improbable(self, amplitude: Mapping[str, float]) -> float:
+        """Negative log prior of the amplitudes, relative to none."""
+        return 0.5 * sum((size / constants.USUAL_MISS_OF_A_FORMULA) ** 2 for size in amplitude.values())
 
     def best(self) -> Smooth:
-        """The most probable amplitudes, and the gain of log evidence by structure of any amplitude."""
-        channels, usual = self.structure.channels, float(constants.USUAL_MISS_OF_A_FORMULA)
-
-        def amplitude(x: np.ndarray) -> dict[str, float]:
-            return dict(zip(channels, (usual * np.exp(x)).tolist(), strict=True))
-
-        search = ParameterSearch(
-            dict.fromkeys(channels, SIZE), lambda x: self.evidence(amplitude(x)), len(self.rows)
-        )
-        x = search.most_probable()
-        gain = search.log_probability(x) - self.evidence({})[0]
-        # To one digit, so that a few covariances serve many hypotheses.
-        return Smooth({name: float(f"{size:.1g}") for name, size in amplitude(x).items()}, gain)
+        """The most likely amplitudes; the gain is reduced by a penalty for the search."""
+        channels = self.structure.channels
+        size, without = dict.fromkeys(channels, 0.0), self.evidence({})
+        paid, gain = len(channels) * math.log(len(AMPLITUDES)), 0.0
+        for channel in (*channels, *channels[:-1]):  # shared changes correlate the channels
+            for amplitude in AMPLITUDES:
+                trial = {**size, channel: float(amplitude)}
+                value = self.evidence(trial) - without - paid
+                if value > gain:
+                    size, gain = trial, value
+        return Smooth(size, gain)
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,9 +14,6 @@ from scipy.optimize import minimize
 
 from mffit.linearised import constants
 
-LARGEST = math.log(1e4)
-"""Bound of the logarithm of a size over its usual one, and of log odds."""
-
 LogPrior = Callable[[float], tuple[float, float]]
 """Log prior density of a parameter on the scale of the search, up to a constant, and its derivative."""
 
@@ -67,10 +64,6 @@ class SearchedParameter(NamedTuple):
     lower: float
     upper: float
     prior: LogPrior = flat
-
-
-SIZE = SearchedParameter(0.0, -LARGEST, LARGEST, half_cauchy)
-"""A size, over its usual one."""
 
 
 class ParameterSearch(NamedTuple):
