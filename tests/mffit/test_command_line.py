@@ -361,7 +361,7 @@ def test_spin_on_a_flat_track_explains_why_there_is_no_factor(tmp_path, capsys):
 
 def shell(*arguments: object, **keys) -> subprocess.CompletedProcess:
     """The program in a separate process."""
-    command = [sys.executable, "-m", "mffit.cli", *map(str, arguments)]
+    command = [sys.executable, "-m", "mffit", *map(str, arguments)]
     return subprocess.run(
         command, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False, timeout=600, **keys
     )

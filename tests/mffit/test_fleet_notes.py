@@ -39,7 +39,9 @@ def test_a_rig_far_from_its_declaration_is_reported_in_declared_deviations(sign)
 @pytest.mark.parametrize("error", RIG_ERRORS, ids=lambda error: error.name)
 def test_every_error_of_the_rig_has_words_of_the_field(error):
     assert error.words
-    assert not ({"alpha", "gamma", "kappa", *error.acts_on} - {*CHANNELS, "Fz"}) & {*re.findall(r"\w+", error.words)}
+    assert not ({"alpha", "gamma", "kappa", *error.acts_on} - {*CHANNELS, "Fz"}) & {
+        *re.findall(r"\w+", error.words)
+    }
 
 
 def test_a_tyre_on_a_changed_rig_is_named_with_its_worst_error():

@@ -207,7 +207,7 @@ def test_a_foreign_file_for_which_the_rig_is_blamed_is_left_out_and_named(rig):
     assert all(states[name].state == "refused" and not states[name].sweep for name in foreign)
 
     assert states["more.csv"].sweep
-    said = campaign_text(found).replace("\n", " ")
+    said = " ".join(campaign_text(found).split())
     assert all(f"not taken: {name}: " in said for name in foreign)
     assert said.count("if it is of another tyre") == len(foreign)
 

@@ -38,14 +38,13 @@ def test_its_evidence_is_the_density_of_the_readings(noise):
         whole = covariance(noise, columns, *np.exp(x))
         return float(multivariate_normal(cov=whole).logpdf(readings))
 
-    def evidence(x: np.ndarray) -> tuple[float, np.ndarray]:
-        return model.evidence(dict(zip(("Fy", "Mz"), np.exp(x).tolist(), strict=True)))
+    def evidence(x: np.ndarray) -> float:
+        amplitude = dict(zip(("Fy", "Mz"), np.exp(x).tolist(), strict=True))
+        return model.evidence(amplitude) + model.improbable(amplitude)
 
-    at, other, step = np.array([-0.4, 0.3]), np.array([0.8, -2.0]), 1e-5 * np.eye(2)
-    assert evidence(at)[0] - evidence(other)[0] == pytest.approx(density(at) - density(other))
-    assert model.evidence({})[0] - evidence(at)[0] == pytest.approx(density([-30.0, -30.0]) - density(at))
-    slopes = [(density(at + d) - density(at - d)) / 2e-5 for d in step]
-    assert evidence(at)[1] == pytest.approx(slopes, rel=1e-5)
+    at, other = np.array([-0.4, 0.3]), np.array([0.8, -2.0])
+    assert evidence(at) - evidence(other) == pytest.approx(density(at) - density(other))
+    assert model.evidence({}) - evidence(at) == pytest.approx(density([-30.0, -30.0]) - density(at))
 
 
 def test_structure_in_the_covariance_is_whitened_like_any_shared_change(noise):

@@ -40,7 +40,7 @@ def direct(**changes):
     """What the direct method found: 18 kN/rad of cornering stiffness."""
     found = dict(
         misaligned=False, alpha_M=ALPHA_M, C_alpha=Quantity(-18000.0, 100.0, "N/rad"), R=Quantity(1.3, 0.002, "m"),
-        epsilon_gamma=Quantity(-0.1, 0.05, "-"), F_phit_load=1500.0,
+        epsilon_gamma=Quantity(-0.1, 0.05, "-"), nominal=SimpleNamespace(load=1500.0),
         per_load=(SimpleNamespace(F_phit=Quantity(-400.0, 20.0, "N")),),
         camber_skew=None, misaligned_setups={}, carried=None, lag=None,
     )  # fmt: skip

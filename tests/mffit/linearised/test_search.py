@@ -9,7 +9,6 @@ import pytest
 from scipy.integrate import quad
 
 from mffit.linearised.search import (
-    LARGEST,
     ParameterSearch,
     SearchedParameter,
     arcsine,
@@ -43,7 +42,7 @@ def test_the_probability_of_a_normal_posterior_is_exact():
     def evidence(x: np.ndarray) -> tuple[float, np.ndarray]:
         return -0.5 * float((x - at) @ information @ (x - at)), -information @ (x - at)
 
-    one = SearchedParameter(0.0, -LARGEST, LARGEST, normal(0.0, 2.0))
+    one = SearchedParameter(0.0, -9.0, 9.0, normal(0.0, 2.0))
     search = ParameterSearch({"a": one, "b": one}, evidence, 50)
     x = search.most_probable({"b": 1.0})
     whole = information + np.eye(2) / 4.0

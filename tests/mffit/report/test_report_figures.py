@@ -76,7 +76,7 @@ def test_all_bands_of_a_report_are_those_of_the_road(tmp_path):
         name: dataclasses.replace(one, missed=one.missed + 0.1 * np.max(np.abs(result.points.channel(name))))
         for name, one in result.prediction.channels.items()
     }
-    result = dataclasses.replace(result, prediction=dataclasses.replace(result.prediction, channels=channels))
+    result = with_channels(result, channels)
     view = view_of(dataclasses.replace(result, road=on_road(result)))
     assert np.ptp(result.prediction.missed("Fy", result.points)) > 50.0
 
@@ -313,7 +313,7 @@ def test_no_text_lies_over_another_or_leaves_its_panel(view, name):
             figure = pictures.figure_of(sheet)
             figure.draw_without_rendering()
             width = figure.bbox.width / sheet.columns
-            everything = [boxes(axes) for axes in figure.axes]
+            everything = [boxes(axes, sheet.columns) for axes in figure.axes]
             assert crossing([box for found in everything for box in found]) == [], one
             for axes, found in zip(figure.axes, everything, strict=True):
                 box = axes.get_window_extent()
@@ -322,10 +322,30 @@ def test_no_text_lies_over_another_or_leaves_its_panel(view, name):
                 assert outside(found, left, right) == [], one
 
 
-def boxes(axes):
-    """Every text of axes with the box around its letters [pixels]."""
-    texts = [text for text in axes.findobj(Text) if text.get_text().strip() and text.get_visible()]
+def boxes(axes, columns=1):
+    """Every text of axes, and those of the figure that are nearest to them in its columns, with its box [pixels]."""
+    beside = [text for text in axes.figure.texts if nearest(text.get_window_extent(), axes.figure, columns) is axes]
+    texts = [text for text in (*axes.findobj(Text), *beside) if text.get_text().strip() and text.get_visible()]
     return [(text.get_text(), text.get_window_extent()) for text in texts]
+
+
+def nearest(box, figure, columns):
+    """The axes in the column of a box, or across columns, whose frame is nearest to the middle of the box."""
+    middle, width = 0.5 * (box.min + box.max), figure.bbox.width / columns
+    left = width * np.floor(middle[0] / width)
+
+    def distance(axes):
+        frame = axes.get_window_extent()
+        return np.hypot(*(middle - np.clip(middle, frame.min, frame.max)))
+
+    there = [axes for axes in figure.axes if (frame := axes.get_window_extent()).x0 < left + width and frame.x1 > left]
+    return min(there, key=distance)
+
+
+def with_channels(result, channels):
+    """The build with other models of its residuals, by channel."""
+    prediction = dataclasses.replace(result.prediction, channels=channels)
+    return dataclasses.replace(result, fit=dataclasses.replace(result.fit, prediction=prediction))
 
 
 def crossing(found):
