@@ -324,8 +324,12 @@ def test_no_text_lies_over_another_or_leaves_its_panel(view, name):
 
 def boxes(axes, columns=1):
     """Every text of axes, and those of the figure that are nearest to them in its columns, with its box [pixels]."""
-    beside = [text for text in axes.figure.texts if nearest(text.get_window_extent(), axes.figure, columns) is axes]
-    texts = [text for text in (*axes.findobj(Text), *beside) if text.get_text().strip() and text.get_visible()]
+    beside = [
+        text for text in axes.figure.texts if nearest(text.get_window_extent(), axes.figure, columns) is axes
+    ]
+    texts = [
+        text for text in (*axes.findobj(Text), *beside) if text.get_text().strip() and text.get_visible()
+    ]
     return [(text.get_text(), text.get_window_extent()) for text in texts]
 
 
@@ -338,7 +342,11 @@ def nearest(box, figure, columns):
         frame = axes.get_window_extent()
         return np.hypot(*(middle - np.clip(middle, frame.min, frame.max)))
 
-    there = [axes for axes in figure.axes if (frame := axes.get_window_extent()).x0 < left + width and frame.x1 > left]
+    there = [
+        axes
+        for axes in figure.axes
+        if (frame := axes.get_window_extent()).x0 < left + width and frame.x1 > left
+    ]
     return min(there, key=distance)
 
 
