@@ -146,7 +146,8 @@ class ScatterOfChannel(ReadOnlyArrays):
 
     def likeliest(self, by: Description, near: Described | None = None) -> Described:
         """A description at its most probable parameters; the search starts at those of ``near``."""
-        model, names = self._model(by), tuple(by.parameters)
+        model, parameters = self._model(by), by.parameters
+        names = tuple(parameters)
         first, last = self.named.shape[1], self.named.shape[1] + self.smooth.shape[1]
 
         def evidence(x: np.ndarray) -> tuple[float, np.ndarray]:
@@ -164,7 +165,7 @@ class ScatterOfChannel(ReadOnlyArrays):
             }
             return found.value, np.array([slopes[name] for name in names])
 
-        search = ParameterSearch(by.parameters, evidence, len(self.residual))
+        search = ParameterSearch(parameters, evidence, len(self.residual))
         x = search.most_probable(None if near is None else near.x)
         probability = search.log_probability(x) + math.log(by.probability)
         return Described(by, dict(zip(names, x.tolist(), strict=True)), probability)

@@ -13,9 +13,9 @@ from mffit.fit.polish import refitted
 from mffit.fit.problem import FitProblem
 from mffit.linearised import LinearisedChannel, LinearisedFit
 from mffit.linearised.components import own_columns
+from mffit.linearised.fitted import unit_of
 from mffit.linearised.inputs import along, settings_of
 from mffit.linearised.mixed import Mixed, MixedPosterior
-from mffit.points.noise import stating
 from mffit.scatter import beyond
 from tir.frozen import ReadOnlyArrays
 
@@ -54,9 +54,8 @@ def _judged(
     for i, (name, u) in enumerate(stated.sigma.items()):
         if name not in left.channels:
             continue
-        channel, own_u = left.channels[name], points.u(name)
-        inputs, residual = channel.smooth.inputs, points.channel(name) - readings[name]
-        unit = np.where(stating(own_u), own_u, np.median(problem.sigma[name][channel.rows]))
+        channel, residual = left.channels[name], points.channel(name) - readings[name]
+        inputs, unit = channel.smooth.inputs, unit_of(points, name, problem.sigma[name][channel.rows])
         place = along(felt, inputs)
         others = _OfOthers(
             channel=channel,
@@ -132,16 +131,13 @@ class _OfOthers(ReadOnlyArrays):
 
     def _distance(self, rows: np.ndarray, k: int, model: Mixed, found: MixedPosterior) -> np.ndarray:
         """Distance (m,) of the ``rows`` of the sweep ``k`` from their predictions, each in standard deviations."""
-        weight = float(np.exp(-self.channel.variances.noise))
-        group = model.groups[k]
+        noise = self.channel.variances.noise
         columns = self.channel.smooth.columns(self.settings[rows]) / self.unit[rows, None]
         own = self.own[rows] * np.any(model.own)  # a single sweep has no effects of its own
-        pull = model.own[group].T @ (model.residual[group] - model.common[group] @ found.mean)
-        error = self.residual[rows] - columns @ found.mean - own @ (weight * found.own[k] @ pull)
-        spread = np.einsum("ij,ij->i", own @ found.own[k], own)
-        spread += np.sum(((columns - weight * own @ found.through[k]) @ found.root) ** 2, axis=1)
+        error, spread = model.predict_further(found, noise, k, Mixed(self.residual[rows], columns, own, ()))
         # Of a reading that is in the model, the others predict what it would be without it.
-        unexplained = 1.0 - weight * spread * np.isin(rows, self.channel.rows[group])
+        inside = np.isin(rows, self.channel.rows[model.groups[k]])
+        unexplained = 1.0 - np.exp(-noise) * spread * inside
         error, spread = error / unexplained, spread / unexplained
         # Nothing holds the last readings of a sweep, and the last but one by them alone, so that an error looks like a bend
         # there: the model error is as uncertain as where nothing was read.

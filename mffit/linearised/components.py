@@ -12,6 +12,7 @@ from mffit.linearised import constants
 from mffit.linearised.mixed import Mixed, Variances
 from mffit.linearised.search import ParameterSearch, SearchedParameter, flat, normal
 from mffit.linearised.smooth import SmoothFunctions
+from mffit.scatter import rms
 from tir.frozen import ReadOnlyArrays
 
 
@@ -102,14 +103,15 @@ class Terms(ReadOnlyArrays):
         given, by_common, by_own = variances(x, self.smooth)
         return given._replace(common=np.append(given.common, self.further)), by_common, by_own
 
-    def most_probable(self, misfit: float, near: Components | None = None) -> Components:
-        """The components of the largest evidence, around their first guess; ``misfit`` is the size of the residuals.
+    def most_probable(self, unit: np.ndarray, near: Components | None = None) -> Components:
+        """The components of the largest evidence, around their first guess; the residuals of ``model`` are over ``unit`` (n,).
 
         The search starts at ``near``, the components of a similar fit, if given; else at a model error that changes over all
         inputs. Random effects of the runs can absorb model error over a condition that runs hold. If they are larger than the
         model error, a second search starts with model error over a single input; its result must be clearly more probable.
         """
-        parameters = _parameters(self.smooth, misfit)
+        rows = np.concatenate(list(self.model.groups))
+        parameters = _parameters(self.smooth, max(rms((self.model.residual * unit)[rows]), 1e-12))
 
         def evidence(x: np.ndarray) -> tuple[float, np.ndarray]:
             given, by_common, by_own = self._with_slopes(x)
@@ -118,7 +120,7 @@ class Terms(ReadOnlyArrays):
             slope[-1] += 2.0 * found.noise
             return found.value, slope
 
-        search = ParameterSearch(parameters, evidence, sum(len(group) for group in self.model.groups))
+        search = ParameterSearch(parameters, evidence, len(rows))
 
         def best(begin: Components) -> np.ndarray:
             return search.most_probable(dict(zip(parameters, begin.logarithms.tolist(), strict=True)))
@@ -137,8 +139,9 @@ class Terms(ReadOnlyArrays):
 def _parameters(smooth: SmoothFunctions, misfit: float) -> dict[str, SearchedParameter]:
     """The components on the scale of the search, in the order of :attr:`Components.logarithms`.
 
-    The search starts at a model error as large as the misfit, and differences of runs of a third of it. Runs differ by at most
-    the misfit, and no length is below the spacing of the settings. The data alone determine model error and noise.
+    The search starts at a model error as large as the ``misfit``, the size of the residuals, and differences of runs of a third
+    of it. Runs differ by at most the misfit, and no length is below the spacing of the settings. The data alone determine model
+    error and noise.
     """
     tiny, most = 1e-4 * misfit, float(constants.LARGEST_RUN_SCALE)
 

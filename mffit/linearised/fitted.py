@@ -165,7 +165,7 @@ class LinearisedChannel(ReadOnlyArrays):
         rig = self.alone.model.common[:, len(self.missed) :]
         model = replace(self.alone.model, common=np.hstack([1.0 / self.unit[:, None], rig]))
         terms = replace(self.alone, model=model, smooth=SmoothFunctions.over(()))
-        return terms.evidence(terms.most_probable(_misfit(model, self.unit)))
+        return terms.evidence(terms.most_probable(self.unit))
 
     def _left_out(self, model: Mixed, given: Variances, rows: Sequence[np.ndarray]) -> list[LeftOutReadings]:
         return [
@@ -181,7 +181,7 @@ class LinearisedChannel(ReadOnlyArrays):
         """Gain of log evidence by adding a known ``change`` (n,) to the model, and :attr:`proof` of the remaining model error."""
         model = replace(self.alone.model, residual=self.alone.model.residual - change / self.unit)
         terms = replace(self.alone, model=model)
-        found = terms.most_probable(_misfit(model, self.unit), self.components)
+        found = terms.most_probable(self.unit, self.components)
         beside = replace(self, alone=terms, components=found)
         return self.stride * (beside._evidence - self._evidence), beside.proof
 
@@ -291,6 +291,12 @@ class _LookedAt(NamedTuple):
     along: np.ndarray  #: (n,) as :func:`mffit.linearised.inputs.along`
 
 
+def unit_of(points: Points, channel: str, sigma: np.ndarray) -> np.ndarray:
+    """Unit (n,) of the residuals of a channel: the stated uncertainty, else the usual one of those that the fit used (m,)."""
+    stated = points.u(channel)
+    return np.where(stating(stated), stated, float(np.median(sigma)))
+
+
 def _channel(
     name: str, sight: _Sight, model: np.ndarray, sigma: np.ndarray, used: np.ndarray
 ) -> LinearisedChannel:
@@ -305,9 +311,7 @@ def _channel(
     rows = every[::stride]
     part, smooth, functions, place = sight.at(rows, name)
     residual = part.channel(name) - model[rows]
-    stated = part.u(name)
-    usual = float(np.median(sigma[rows]))
-    unit = np.where(stating(stated), stated, usual)
+    unit = unit_of(part, name, sigma[rows])
     groups = [np.flatnonzero(part.sweep == k) for k in np.unique(part.sweep)]
     own = own_columns(model[rows], place)
     if len(groups) == 1:  # random effects are not identifiable, and would absorb the model error
@@ -325,7 +329,7 @@ def _channel(
         groups=[own for own in (g[known[g]] for g in groups) if len(own)],
     )
     terms = Terms(alone, smooth, declared)
-    components = terms.most_probable(_misfit(alone, unit), sight.near.get(name))
+    components = terms.most_probable(unit, sight.near.get(name))
     turn = _turn(sight.numbers, (slopes / sigma[rows][:, None])[known], stride)
     return LinearisedChannel(
         name=name,
@@ -384,9 +388,3 @@ def _turn(numbers: Sequence[Uncertain], weighted: np.ndarray, stride: int) -> np
     """
     prior = np.array([number.spread for number in numbers]) ** -2.0
     return root(inverse(np.diag(prior) + stride * (weighted.T @ weighted) / constants.WIDER_THAN_THE_FIT))
-
-
-def _misfit(model: Mixed, unit: np.ndarray) -> float:
-    """Root mean square of the residuals in the groups of a model, which are over ``unit`` (n,); never 0."""
-    rows = np.concatenate(list(model.groups))
-    return max(rms((model.residual * unit)[rows]), 1e-12)

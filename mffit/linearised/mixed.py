@@ -146,6 +146,22 @@ class Mixed(ReadOnlyArrays):
         found, w = self.posterior(given), float(np.exp(-given.noise))
         return [self._predicted(found, w, np.sort(one)) for one in rows]
 
+    def predict_further(
+        self, found: MixedPosterior, noise: float, k: int, further: Mixed
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Errors (m,) and variances (m,), without noise, of the predictions of ``further`` readings of the group ``k``.
+
+        ``found`` is the posterior of this model for the log variance ``noise``.
+        """
+        w, z, x = float(np.exp(-noise)), further.own, further.common
+        error = further.residual - x @ found.mean - w * z @ found.own[k] @ self._left_to_group(found, k)
+        spread = np.einsum("ij,ij->i", z @ found.own[k], z)
+        return error, spread + np.sum(((x - w * z @ found.through[k]) @ found.root) ** 2, axis=1)
+
+    def _left_to_group(self, found: MixedPosterior, k: int) -> np.ndarray:
+        """Products (q,) of the random effects' columns and what the common numbers leave of a group's residuals."""
+        return np.asarray(self._sums.own_pull[k] - self._sums.across[k] @ found.mean)
+
     def _predicted(self, found: MixedPosterior, w: float, rows: np.ndarray) -> LeftOutReadings:
         block = np.zeros(2 * (len(rows),))
         whitened, moved = [], []
@@ -159,8 +175,7 @@ class Mixed(ReadOnlyArrays):
             block[begin:end, begin:end] = w * (np.eye(len(out)) - own @ z.T)
             begin = end
             whitened.append(w * (x - w * z @ found.through[k]))
-            pull = self._sums.own_pull[k] - self._sums.across[k] @ found.mean
-            moved.append(w * (r - x @ found.mean - own @ pull))
+            moved.append(w * (r - x @ found.mean - own @ self._left_to_group(found, k)))
             order.append(out)
         through = np.concatenate(whitened) @ found.root
         covariance = np.linalg.inv(block - through @ through.T)
