@@ -103,15 +103,18 @@ class Terms(ReadOnlyArrays):
         given, by_common, by_own = variances(x, self.smooth)
         return given._replace(common=np.append(given.common, self.further)), by_common, by_own
 
-    def most_probable(self, unit: np.ndarray, near: Components | None = None) -> Components:
+    def most_probable(
+        self, unit: np.ndarray, near: Components | None = None, most_noise: float = 1e3
+    ) -> Components:
         """The components of the largest evidence, around their first guess; the residuals of ``model`` are over ``unit`` (n,).
 
-        The search starts at ``near``, the components of a similar fit, if given; else at a model error that changes over all
+        The noise is at most ``most_noise`` times the stated one. The search starts at ``near``, the components of a similar fit, if given; else at a model error that changes over all
         inputs. Random effects of the runs can absorb model error over a condition that runs hold. If they are larger than the
         model error, a second search starts with model error over a single input; its result must be clearly more probable.
         """
         rows = np.concatenate(list(self.model.groups))
-        parameters = _parameters(self.smooth, max(rms((self.model.residual * unit)[rows]), 1e-12))
+        misfit = max(rms((self.model.residual * unit)[rows]), 1e-12)
+        parameters = _parameters(self.smooth, misfit, most_noise)
 
         def evidence(x: np.ndarray) -> tuple[float, np.ndarray]:
             given, by_common, by_own = self._with_slopes(x)
@@ -136,7 +139,7 @@ class Terms(ReadOnlyArrays):
         return seen
 
 
-def _parameters(smooth: SmoothFunctions, misfit: float) -> dict[str, SearchedParameter]:
+def _parameters(smooth: SmoothFunctions, misfit: float, most_noise: float) -> dict[str, SearchedParameter]:
     """The components on the scale of the search, in the order of :attr:`Components.logarithms`.
 
     The search starts at a model error as large as the ``misfit``, the size of the residuals, and differences of runs of a third
@@ -163,5 +166,5 @@ def _parameters(smooth: SmoothFunctions, misfit: float) -> dict[str, SearchedPar
         "scale": around(most / 10.0, 1e-6, most),
         "shape": around(misfit / 3.0, tiny, misfit),
         "shape_length": around(0.3, 0.05, 1.0),
-        "noise": around(1.0, 1e-3, 1e3, known=False),
+        "noise": around(1.0, 1e-3, most_noise, known=False),
     }

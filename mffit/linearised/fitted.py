@@ -129,6 +129,17 @@ class LinearisedChannel(ReadOnlyArrays):
         return np.full(len(self.variances.own), 2.0 * np.log(1e-6 * float(np.median(self.unit))))
 
     @cached_property
+    def proof_of_noise(self) -> float:
+        """Gain of log evidence by a noise beyond the stated one.
+
+        Few readings cannot tell noise from model error that bends between them, which the best model at the stated noise has
+        in its place.
+        """
+        return self.stride * (
+            self._evidence - self.alone.evidence(self.alone.most_probable(self.unit, self.components, 1.0))
+        )
+
+    @cached_property
     def proof(self) -> float:
         """Gain of log evidence by the model error, over a constant alone."""
         return self.stride * (self._evidence - self._without)

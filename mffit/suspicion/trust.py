@@ -135,16 +135,21 @@ class FinishedFit(ReadOnlyArrays, JudgedMeasurement):
         """By channel, misfit over stated noise; NaN if no noise is stated."""
         return {name: self.misfit(name).ratio for name in self.used}
 
-    def rough(self, channel: str) -> OverNoise:
-        """The part of the misfit that is neither smooth model error nor scatter between runs."""
+    def rough(self, channel: str, limit: float, sigma: float) -> bool:
+        """Whether a misfit that is neither smooth nor scatter between runs exceeds ``limit`` times the noise, at ``sigma``."""
         seen = self.misfit(channel)
         if self.linear is None or channel not in self.linear.channels:
-            return seen
-        return seen._replace(ratio=min(seen.ratio, self.linear.channels[channel].components.noise))
+            return far(seen, limit, sigma)
+        own = self.linear.channels[channel]
+        return (
+            seen.n > 0
+            and min(seen.ratio, own.components.noise) > limit
+            and own.proof_of_noise > 0.5 * sigma**2
+        )
 
     def doubtful(self, channel: str) -> bool:
         """Whether the rough part of a misfit significantly exceeds the noise."""
-        return far(self.rough(channel), constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA)
+        return self.rough(channel, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA)
 
     def at_the_noise(self, channel: str) -> bool:
         """Whether all residuals of a channel are noise, as stated or as estimated from neighbouring readings.
@@ -238,7 +243,7 @@ def above_noise(fit: FinishedFit) -> Iterator[Facts]:
     """
     noise = "the scatter within its rests" if fit.averaged else "its stated uncertainty"
     for name in fit.used:
-        rough = far(fit.rough(name), constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA)
+        rough = fit.rough(name, constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA)
         certain = rough or (fit.wrong(name) and fit.cause_is_certain and not fit.against)
         if certain or fit.doubtful(name):
             facts = {"channel": name, "ratio": fit.misfit(name).ratio, "carriers": _carriers(fit, name)}

@@ -72,6 +72,15 @@ def test_left_out_runs_lie_as_far_off_as_stated(found):
     assert usual == pytest.approx(np.hypot(OFFSET, NOISE), rel=0.35)
 
 
+def test_a_noise_beyond_the_stated_one_is_proven(found):
+    assert found.proof_of_noise < 3.0
+    points = drawn()
+    half = linearised(points, simulation(), {"Fy": np.full(len(points), 0.5 * NOISE)}, NUMBERS).channels["Fy"]
+    assert half.components.noise == pytest.approx(2.0, rel=0.15)
+    alone = len(points) * (0.5 * (2.0**2 - 1.0) - np.log(2.0))  # if nothing else could explain it
+    assert 0.3 * alone < half.proof_of_noise < alone
+
+
 def test_a_single_reading_shows_a_constant_at_most():
     one = drawn().select(np.array([10]))
     channel = left(one)

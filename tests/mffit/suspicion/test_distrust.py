@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.stats import norm
@@ -56,6 +58,20 @@ def test_a_fit_at_the_noise_is_trusted_without_doubt():
 
 def test_without_a_stated_noise_there_is_no_misfit_over_it():
     assert np.isnan(judged(noise(), u=np.nan).over_noise["Fy"])
+
+
+@pytest.mark.parametrize(
+    ("proof", "trusted", "doubted"), [(4.4, True, False), (12.4, True, True), (12.6, False, False)]
+)
+def test_noise_that_model_error_may_be_counts_by_its_evidence(proof, trusted, doubted):
+    """Half of the squares of three and of five standard deviations; the misfit is twice the stated noise."""
+    channel = SimpleNamespace(
+        components=SimpleNamespace(noise=1.8), proof_of_noise=proof, misfit=2.0, rows=np.arange(200),
+        is_proven=False, size=0.0,
+    )  # fmt: skip
+    found = judged(noise(2.0), linear=SimpleNamespace(channels={"Fy": channel}, numbers=()))
+    assert found.trusted == trusted
+    assert bool(found.doubts) == doubted
 
 
 @pytest.mark.parametrize(
