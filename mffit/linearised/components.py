@@ -108,9 +108,10 @@ class Terms(ReadOnlyArrays):
     ) -> Components:
         """The components of the largest evidence, around their first guess; the residuals of ``model`` are over ``unit`` (n,).
 
-        The noise is at most ``most_noise`` times the stated one. The search starts at ``near``, the components of a similar fit, if given; else at a model error that changes over all
-        inputs. Random effects of the runs can absorb model error over a condition that runs hold. If they are larger than the
-        model error, a second search starts with model error over a single input; its result must be clearly more probable.
+        The noise is at most ``most_noise`` times the stated one. The search starts at ``near``, the components of a similar
+        fit, if given; else at a model error that changes over all inputs. Random effects of the runs can absorb model error over
+        a condition that runs hold. If they are larger than the model error, a second search starts with model error over a
+        single input; its result must be clearly more probable.
         """
         rows = np.concatenate(list(self.model.groups))
         misfit = max(rms((self.model.residual * unit)[rows]), 1e-12)
