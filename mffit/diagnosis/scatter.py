@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -24,7 +23,6 @@ from mffit.linearised.search import (
     arcsine,
     half_cauchy,
     normal,
-    share_of,
     uniform,
 )
 from mffit.scatter import rms
@@ -48,53 +46,35 @@ class ExplainingColumns(ReadOnlyArrays):
     withdrawn: bool = False  #: whether effects that differ by run are excluded, however likely they are
 
 
+SIZE = SearchedParameter(0.0, -LARGEST, LARGEST, half_cauchy)
+PARAMETERS: Mapping[str, SearchedParameter] = {
+    "scale": SIZE._replace(prior=normal(0.0, math.log(constants.STATED_NOISE_FACTOR))),
+    "smooth": SIZE,
+    "growth": SIZE,
+    "offsets": SIZE,
+    "correlation": SearchedParameter(
+        float(constants.USUAL_LOG_ODDS_OF_MEMORY), -LARGEST, LARGEST_MEMORY, arcsine
+    ),
+    "independent": SIZE._replace(prior=uniform),
+}
+"""Parameters of the terms of a channel: logarithms of sizes over the usual ones, and log odds of shares."""
+ALWAYS = ("named", "least")
+"""Terms whose size is known."""
+
+
 @dataclass(frozen=True, slots=True)
 class Description:
     """A model of the errors of a channel."""
 
+    names: tuple[str, ...]  #: parameters of its terms
+    probability: float  #: prior probability
     span: MemorySpan | None = None  #: chains of the autocorrelation; None without autocorrelation
-    independent: bool = False  #: whether there is also an independent part
-    growth: bool = False  #: whether the noise grows with the reading
-    offsets: bool = False  #: whether runs have offsets
-    probability: float = 1.0  #: prior probability
 
-    @property
-    def parameters(self) -> dict[str, SearchedParameter]:
-        """The parameters: logarithms of sizes over the usual ones, and log odds of shares."""
-        size = SearchedParameter(0.0, -LARGEST, LARGEST, half_cauchy)
-        scale = size._replace(prior=normal(0.0, math.log(constants.STATED_NOISE_FACTOR)))
-        found = {"scale": scale, "smooth": size}
-        if self.growth:
-            found["growth"] = size
-        if self.offsets:
-            found["offsets"] = size
-        if self.span is not None:
-            start = float(constants.USUAL_LOG_ODDS_OF_MEMORY)
-            found["correlation"] = SearchedParameter(start, -LARGEST, LARGEST_MEMORY, arcsine)
-        if self.independent:
-            found["independent"] = size._replace(prior=uniform)
-        return found
-
-
-class ScatterNumbers(NamedTuple):
-    """The numbers of a description."""
-
-    scale: float  #: uncertainty over the stated one
-    smooth: float  #: amplitude of smooth structure over the usual one
-    growth: float  #: growth over the usual one
-    offsets: float  #: offsets of runs over the usual ones
-    memory: Memory
-
-    @classmethod
-    def of(cls, x: Mapping[str, float]) -> ScatterNumbers:
-        """The numbers from their logarithms and log odds."""
-        scale, smooth, growth, offsets = (
-            math.exp(x.get(name, -math.inf)) for name in ("scale", "smooth", "growth", "offsets")
-        )
-        correlation, independent = (
-            share_of(x.get(name, -math.inf)) for name in ("correlation", "independent")
-        )
-        return cls(scale, smooth, growth, offsets, Memory(correlation, independent))
+    def plus(
+        self, name: str, probability: float | None = None, span: MemorySpan | None = None
+    ) -> Description:
+        """The description with one parameter more."""
+        return Description((*self.names, name), probability or self.probability, span or self.span)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,90 +85,48 @@ class Described:
     x: Mapping[str, float]  #: most probable parameters, logarithms and log odds
     log_probability: float  #: log of prior probability times evidence
 
-    @property
-    def numbers(self) -> ScatterNumbers:
-        return ScatterNumbers.of(self.x)
+    def size(self, name: str) -> float:
+        """Size of a term over the usual one; 0 without it."""
+        return math.exp(self.x.get(name, -math.inf))
 
 
 @dataclass(frozen=True, eq=False)
 class ScatterOfChannel(ReadOnlyArrays):
-    """The used readings (m,) of one channel, and the columns that could explain them."""
+    """The used readings (m,) of one channel, and every term that could explain them."""
 
-    stated: np.ndarray  #: stated standard uncertainty
-    residual: np.ndarray  #: measured minus simulated
-    size: np.ndarray  #: sizes of the readings, to which growing noise is proportional
+    terms: Chained  #: at their usual sizes, without chains
     chains: Mapping[MemorySpan, Sequence[np.ndarray]]  #: chains along which errors may be autocorrelated
     sweep: np.ndarray
-    named: np.ndarray  #: (m, k) changes by effects and coefficients, one prior standard deviation each
-    smooth: np.ndarray  #: (m, k) changes by smooth structure at its usual amplitude
-    least: float  #: standard uncertainty that is always added, for readings without noise
-    weight: np.ndarray
-    runs: np.ndarray  #: (m, k) offsets of runs at their usual size, if a description has them
 
-    def uncertainty(self, at: ScatterNumbers) -> np.ndarray:
-        """Standard uncertainty (m,) of every reading."""
-        return np.sqrt(self._squares(at).sum(axis=0) / self.weight)
-
-    def _squares(self, at: ScatterNumbers) -> np.ndarray:
-        """Components of the variances (3, m) at weight 1: scaled stated one, growing one, constant one."""
-        stated = at.scale * self.stated
-        growing = at.growth * constants.USUAL_GROWTH * self.size
-        return np.array([stated**2, growing**2, np.full(len(stated), self.least**2)])
-
-    def _sizes(self, at: ScatterNumbers) -> np.ndarray:
-        counts = [self.named.shape[1], self.smooth.shape[1], self.runs.shape[1]]
-        return np.repeat([1.0, at.smooth, at.offsets], counts)
-
-    def _model(self, by: Description) -> Chained:
-        """The linear model of a description."""
-        columns = np.column_stack([self.named, self.smooth, self.runs])
-        return Chained(self.residual, columns, self.chains[by.span or MemorySpan.SWEEP])
+    def described(self, by: Description) -> Chained:
+        """The terms of a description."""
+        columns, noise = (
+            {name: term for name, term in terms.items() if name in (*by.names, *ALWAYS)}
+            for terms in (self.terms.columns, self.terms.noise)
+        )
+        chains = self.chains[by.span or MemorySpan.SWEEP]
+        return replace(self.terms, columns=columns, noise=noise, chains=chains)
 
     def likeliest(self, by: Description, near: Described | None = None) -> Described:
         """A description at its most probable parameters; the search starts at those of ``near``."""
-        model, parameters = self._model(by), by.parameters
-        names = tuple(parameters)
-        first, last = self.named.shape[1], self.named.shape[1] + self.smooth.shape[1]
+        model = self.described(by)
 
         def evidence(x: np.ndarray) -> tuple[float, np.ndarray]:
-            at = ScatterNumbers.of(dict(zip(names, x.tolist(), strict=True)))
-            squares = self._squares(at)
-            total = squares.sum(axis=0)
-            found = model.evidence(np.sqrt(total / self.weight), self._sizes(at), at.memory)
-            slopes = {
-                "scale": found.u @ (squares[0] / total),
-                "smooth": np.sum(found.sizes[first:last]),
-                "growth": found.u @ (squares[1] / total),
-                "offsets": np.sum(found.sizes[last:]),
-                "correlation": found.memory[0] * at.memory.correlation * (1.0 - at.memory.correlation),
-                "independent": found.memory[1] * at.memory.independent * (1.0 - at.memory.independent),
-            }
-            return found.value, np.array([slopes[name] for name in names])
+            value, slopes = model.evidence(dict(zip(by.names, x.tolist(), strict=True)))
+            return value, np.array([*slopes.values()])
 
-        search = ParameterSearch(parameters, evidence, len(self.residual))
+        search = ParameterSearch({n: PARAMETERS[n] for n in by.names}, evidence, len(self.sweep))
         x = search.most_probable(None if near is None else near.x)
         probability = search.log_probability(x) + math.log(by.probability)
-        return Described(by, dict(zip(names, x.tolist(), strict=True)), probability)
+        return Described(by, dict(zip(by.names, x.tolist(), strict=True)), probability)
 
     def standardised(self, found: Described) -> np.ndarray:
         """Error (m,) of every reading's prediction from all others, over its standard uncertainty at weight 1."""
-        at = found.numbers
-        seen = self._model(found.by).foretold(self.uncertainty(at), self._sizes(at), at.memory)
-        return seen.error / np.sqrt(seen.variance + (self.weight - 1.0) * seen.own)
+        return self.described(found.by).standardised(found.x)
 
-    def select(self, rows: np.ndarray) -> ScatterOfChannel:
-        """The channel with some of its readings only."""
-        place = np.full(len(self.stated), -1)
-        place[rows] = np.arange(len(rows))
-        chains = {
-            span: [p[p >= 0] for p in (place[c] for c in found) if np.any(p >= 0)]
-            for span, found in self.chains.items()
-        }
-        parts = {
-            name: getattr(self, name)[rows]
-            for name in ("stated", "residual", "size", "sweep", "named", "smooth", "weight", "runs")
-        }
-        return replace(self, chains=chains, **parts)
+    def plus(self, name: str, columns: np.ndarray) -> ScatterOfChannel:
+        """The channel with another term (m, k)."""
+        return replace(self, terms=replace(self.terms, columns={**self.terms.columns, name: columns}))
 
     @property
     def sample(self) -> ScatterOfChannel:
@@ -196,8 +134,22 @@ class ScatterOfChannel(ReadOnlyArrays):
         names = np.unique(self.sweep)
         most = max(len(names) // int(constants.FEWEST_SWEEPS_FOR_SCATTER), 1)
         stride = min(math.ceil(len(self.sweep) / constants.READINGS_FOR_SCATTER), most)
-        rows = np.flatnonzero(np.isin(self.sweep, names[::stride]))
-        return self if stride == 1 else self.select(rows)
+        return self if stride == 1 else self._select(np.flatnonzero(np.isin(self.sweep, names[::stride])))
+
+    def _select(self, rows: np.ndarray) -> ScatterOfChannel:
+        """The channel with some of its readings only."""
+        place = np.full(len(self.sweep), -1)
+        place[rows] = np.arange(len(rows))
+        chains = {
+            span: [p[p >= 0] for p in (place[c] for c in found) if np.any(p >= 0)]
+            for span, found in self.chains.items()
+        }
+        columns, noise = (
+            {name: term[rows] for name, term in terms.items()}
+            for terms in (self.terms.columns, self.terms.noise)
+        )
+        terms = Chained(self.terms.residual[rows], columns, noise, (), self.terms.weight[rows])
+        return ScatterOfChannel(terms, chains, self.sweep[rows])
 
 
 def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, size: np.ndarray) -> Noise:
@@ -208,36 +160,19 @@ def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, si
         rows = rows[np.isfinite(noise.stated[rows])]
         if not len(rows):
             continue
-        stated, turn = noise.stated[rows], None if noise.turn is None else noise.turn[rows]
-        chains = {MemorySpan.SWEEP: chains_of(noise.chain[rows])}
-        for span, chain in noise.longer.items():
-            longer = chains_of(chain[rows], turn)
-            if not any(_same(longer, known) for known in chains.values()):
-                chains[span] = longer
-        channel = ScatterOfChannel(
-            stated=stated,
-            residual=np.nan_to_num(residual[rows]),
-            size=np.abs(np.nan_to_num(size[rows])),
-            chains=chains,
-            sweep=noise.chain[rows],
-            named=_condensed(explained.named[rows], stated),
-            smooth=_condensed(constants.USUAL_MISS_OF_A_FORMULA * explained.smooth[rows], stated),
-            least=0.5 * constants.NO_NOISE_SHARE * rms(size[rows]),
-            weight=np.ones(len(rows)),
-            runs=np.zeros((len(rows), 0)),
-        )
-        runs = {effect: _condensed(columns[rows], stated) for effect, columns in explained.runs.items()}
+        channel = _channel(noise, np.nan_to_num(residual), explained, size, rows)
+        runs = {n: _condensed(columns[rows], noise.stated[rows]) for n, columns in explained.runs.items()}
         needed = constants.SURPRISING_LOG_ODDS + math.log(max(len(runs), 1))
         found, channel, tails, here = _of_channel(
             channel, runs, math.inf if explained.withdrawn else float(needed)
         )
-        at = found.numbers
-        u[rows], weight[rows] = channel.uncertainty(at), channel.weight
+        u[rows], weight[rows] = channel.described(found.by).uncertainty(found.x), channel.terms.weight
+        memory = Memory.of(found.x)
         scatter[name] = Scatter(
-            scale=at.scale,
-            growth=float(constants.USUAL_GROWTH) * at.growth,
-            memory=at.memory.correlation,
-            independent=at.memory.independent,
+            scale=found.size("scale"),
+            growth=float(constants.USUAL_GROWTH) * found.size("growth"),
+            memory=memory.correlation,
+            independent=memory.independent,
             tails=tails,
             beyond_weights=beyond_weights(channel.standardised(found), tails),
             span=found.by.span or MemorySpan.SWEEP,
@@ -248,6 +183,31 @@ def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, si
             offsets[effect] = RunOffsets(both, needed, max(other.size, larger), other.channels | {name})
     found_noise = replace(noise, u=u, scatter=scatter, weight=weight, offsets=offsets)
     return _at_least_of_a_rig(found_noise, size)
+
+
+def _channel(
+    noise: Noise, residual: np.ndarray, explained: ExplainingColumns, size: np.ndarray, rows: np.ndarray
+) -> ScatterOfChannel:
+    """The terms of the readings (c n,) in the ``rows`` (m,) of one channel."""
+    stated, turn = noise.stated[rows], None if noise.turn is None else noise.turn[rows]
+    chains = {MemorySpan.SWEEP: chains_of(noise.chain[rows])}
+    for span, chain in noise.longer.items():
+        longer = chains_of(chain[rows], turn)
+        if not any(_same(longer, known) for known in chains.values()):
+            chains[span] = longer
+    growing = constants.USUAL_GROWTH * np.nan_to_num(size[rows])
+    least = 0.5 * constants.NO_NOISE_SHARE * rms(size[rows])  # for readings without noise
+    terms = Chained(
+        residual=residual[rows],
+        columns={
+            "named": _condensed(explained.named[rows], stated),
+            "smooth": _condensed(constants.USUAL_MISS_OF_A_FORMULA * explained.smooth[rows], stated),
+        },
+        noise={"scale": stated**2, "growth": growing**2, "least": np.full(len(rows), least**2)},
+        chains=(),
+        weight=np.ones(len(rows)),
+    )
+    return ScatterOfChannel(terms, chains, noise.chain[rows])
 
 
 def _same(one: Sequence[np.ndarray], other: Sequence[np.ndarray]) -> bool:
@@ -292,44 +252,41 @@ def _of_channel(
         return found[0], channel, tails, offsets
     # The weights of outliers follow from a description without offsets, so offsets must be likelier without weights, too.
     weighing = [plain] if math.isinf(tails) else [plain, channel]
-    rivals = [(one, _descriptions(one, offsets=False, only=span)) for one in weighing]
+    rivals = [(one, _descriptions(one, only=span)) for one in weighing]
     most, best = needed, None
     for effect, columns in runs.items():
         if columns.shape[1]:
             odds, size = math.inf, 0.0
             for one, alone in rivals:
-                shifted = replace(one, runs=columns)
-                beside = _descriptions(shifted, offsets=True, only=span)
-                size = beside[0].numbers.offsets
+                beside = _descriptions(one.plus("offsets", columns), only=span)
+                size = beside[0].size("offsets")
                 odds = min(odds, _log_sum(beside) - _log_sum(alone))
             offsets[effect] = RunOffsets(odds, needed, size, frozenset())
             if odds > most:
                 most, best = odds, columns
     if best is not None:
-        found, channel, tails = _weighted(replace(plain, runs=best), offsets=True, only=span)
+        found, channel, tails = _weighted(plain.plus("offsets", best), only=span)
     return found[0], channel, tails, offsets
 
 
 def _weighted(
-    channel: ScatterOfChannel, *, offsets: bool = False, only: MemorySpan | None = None
+    channel: ScatterOfChannel, only: MemorySpan | None = None
 ) -> tuple[list[Described], ScatterOfChannel, float]:
     """The descriptions, most likely first, the weighted channel, and the degrees of freedom of its tails, by iteration."""
-    found, tails = _descriptions(channel, offsets=offsets, only=only), math.inf
+    found, tails = _descriptions(channel, only), math.inf
     for _ in range(constants.MOST_READING_WEIGHT_ROUNDS):
         z = channel.standardised(found[0])
         tails, width = heavy_tails(z)
         weight = weights(z, tails, width)
-        change = np.max(np.abs(np.sqrt(weight) - np.sqrt(channel.weight)))
-        channel = replace(channel, weight=weight)
+        change = np.max(np.abs(np.sqrt(weight) - np.sqrt(channel.terms.weight)))
+        channel = replace(channel, terms=replace(channel.terms, weight=weight))
         if change < constants.SCATTER_SETTLED:
             break
         found = [channel.sample.likeliest(found[0].by, found[0])]
     return found, channel, tails
 
 
-def _descriptions(
-    channel: ScatterOfChannel, *, offsets: bool, only: MemorySpan | None = None
-) -> list[Described]:
+def _descriptions(channel: ScatterOfChannel, only: MemorySpan | None = None) -> list[Described]:
     """All descriptions of the errors, the chosen one first: autocorrelation only if proven, along the shortest likely chains.
 
     The possible chains, or the ``only`` ones, have equal prior probabilities. An additional independent part is tried for the
@@ -337,25 +294,23 @@ def _descriptions(
     """
     some = channel.sample
     never, with_memory, with_both = constants.MEMORY_MODEL_PROBABILITIES
-    first = some.likeliest(Description(offsets=offsets, probability=never))
-    growing = some.likeliest(replace(first.by, growth=True), first)
+    offsets = [name for name in ("offsets",) if name in some.terms.columns]
+    first = some.likeliest(Description(("scale", "smooth", *offsets), never))
+    growing = some.likeliest(first.by.plus("growth"), first)
     if growing.log_probability - first.log_probability > constants.SURPRISING_LOG_ODDS:
         first = growing
     share = 1.0 / len(some.chains)
     found = [
-        some.likeliest(replace(first.by, span=span, probability=with_memory * share), first)
+        some.likeliest(first.by.plus("correlation", with_memory * share, span), first)
         for span in ((only,) if only else some.chains)
     ]
     best = max(found, key=lambda one: one.log_probability)
-    both = replace(best.by, independent=True, probability=with_both * share)
-    found += [first, some.likeliest(both, best)]
+    found += [first, some.likeliest(best.by.plus("independent", with_both * share), best)]
     found.sort(key=lambda one: -one.log_probability)
     proven = found[0].log_probability - constants.SURPRISING_LOG_ODDS
     if found[0].by.span is None:
         return found
-    alike = [
-        one for one in found if one.by.independent == found[0].by.independent and one.by.span is not None
-    ]
+    alike = [one for one in found if one.by.names == found[0].by.names]
     spans = [one.by.span for one in alike if one.log_probability > proven]
     shortest = next((span for span in some.chains if span in spans), alike[0].by.span)
     chosen = first if first.log_probability > proven else next(x for x in alike if x.by.span is shortest)

@@ -5,7 +5,8 @@ In :mod:`mffit.linearised.mixed` each group has random effects; here instead the
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -15,6 +16,7 @@ from scipy.linalg import solve_triangular
 
 from mffit.linearised import constants
 from mffit.linearised.gaussian import Informed
+from mffit.linearised.search import share_of
 from tir.frozen import ReadOnlyArrays
 
 
@@ -23,6 +25,11 @@ class Memory(NamedTuple):
 
     correlation: float = 0.0  #: correlation of neighbouring readings in the exponential part
     independent: float = 0.0  #: share of the variance that is independent
+
+    @classmethod
+    def of(cls, x: Mapping[str, float]) -> Memory:
+        """The memory from the log odds of its fields; a missing one is 0."""
+        return cls(*(share_of(x.get(name, -math.inf)) for name in cls._fields))
 
     def matrix(self, n: int) -> np.ndarray:
         """Correlation matrix (n, n) of the readings of a chain."""
@@ -148,35 +155,30 @@ def _with_zeros(x: np.ndarray) -> np.ndarray:
     return np.concatenate([x, np.zeros((1, *x.shape[1:]))])
 
 
-class ChainedEvidence(NamedTuple):
-    """Log marginal likelihood of the readings, up to a constant, and its derivatives."""
-
-    value: float
-    sizes: np.ndarray  #: (k,) derivatives by the logarithms of the sizes of the columns
-    u: np.ndarray  #: (m,) derivatives by the logarithms of the uncertainties
-    memory: np.ndarray  #: (2,) derivatives by correlation and independent share
-
-
-class Foretold(NamedTuple):
-    """Leave-one-out prediction of each reading, in units of its uncertainty."""
-
-    error: np.ndarray  #: (m,) reading less prediction
-    variance: np.ndarray  #: (m,) variance of the error
-    own: np.ndarray  #: (m,) the part of the variance from the reading's own error
-
-
 @dataclass(frozen=True, eq=False)
 class Chained(ReadOnlyArrays):
-    """Readings (m,) = columns @ numbers of unit prior variance + errors that are autocorrelated along chains."""
+    """Readings (m,) as a sum of declared terms: numbers of unit prior variance, and errors that are autocorrelated along chains.
+
+    A parameter with the name of a term is the logarithm of its size; a term without one has size 1. The parameters
+    ``correlation`` and ``independent`` are the log odds of the memory's; without them the errors are independent.
+    """
 
     residual: np.ndarray  #: (m,)
-    columns: np.ndarray  #: (m, k)
+    columns: Mapping[str, np.ndarray]  #: by term, changes (m, k) of the readings by its numbers at size 1
+    noise: Mapping[str, np.ndarray]  #: by term, variance (m,) of a part of the errors at size 1 and weight 1
     chains: Sequence[np.ndarray]
+    weight: np.ndarray  #: (m,) usual variance of each reading's error over its own
 
-    def evidence(self, u: np.ndarray, sizes: np.ndarray, memory: Memory) -> ChainedEvidence:
-        """The log marginal likelihood for uncertainties (m,), sizes (k,) of the columns and an autocorrelation."""
-        errors = ChainedErrors(self.chains, memory)
-        plain, white = self._rows(errors, u, sizes)
+    def uncertainty(self, x: Mapping[str, float]) -> np.ndarray:
+        """Standard deviation (m,) of the errors."""
+        return np.asarray(np.sqrt(sum(self._parts(x).values()) / self.weight))
+
+    def _parts(self, x: Mapping[str, float]) -> dict[str, np.ndarray]:
+        return {name: math.exp(2.0 * x.get(name, 0.0)) * part for name, part in self.noise.items()}
+
+    def evidence(self, x: Mapping[str, float]) -> tuple[float, dict[str, float]]:
+        """The log marginal likelihood of the readings, up to a constant, and its derivatives by the parameters ``x``."""
+        errors, u, plain, white = self._rows(x)
         found = Informed.of_rows(white[:, 1:], white[:, 0])
         mean, inverse = found.mean, found.covariance
         left = white[:, 0] - white[:, 1:] @ mean
@@ -184,32 +186,48 @@ class Chained(ReadOnlyArrays):
         log = float(np.sum(np.log(u))) + 0.5 * (errors.log_determinant + found.log_determinant)
         away, back = plain[:, 0] - plain[:, 1:] @ mean, errors.back(np.column_stack([left, spread]))
         by_u = back[:, 0] * away - 1.0 + np.einsum("ij,ij->i", back[:, 1:], plain[:, 1:])
-        by_memory = np.zeros(2)
+        by_size = np.split(mean**2 + np.diag(inverse) - 1.0, np.cumsum(self._counts)[:-1])
+        slopes = {name: float(np.sum(by)) for name, by in zip(self.columns, by_size, strict=True)}
+        total = u**2 * self.weight
+        slopes |= {name: float(by_u @ (part / total)) for name, part in self._parts(x).items()}
         if not errors.trivial:
             inside = errors.products(np.column_stack([left, spread]), np.column_stack([left, white[:, 1:]]))
             lengths = np.array([len(rows) for rows in self.chains])
             inside -= np.diag(np.sum(lengths > np.arange(len(inside))[:, None], axis=1))
             turned = errors.root.T @ inside @ errors.root
-            by_memory = 0.5 * np.einsum("kij,ij->k", memory.slopes(len(turned)), turned)
-        return ChainedEvidence(
-            value=-0.5 * float(left @ white[:, 0]) - log,
-            sizes=mean**2 + np.diag(inverse) - 1.0,
-            u=by_u,
-            memory=by_memory,
-        )
+            by_memory = 0.5 * np.einsum("kij,ij->k", errors.memory.slopes(len(turned)), turned)
+            for name, share, by in zip(Memory._fields, errors.memory, by_memory.tolist(), strict=True):
+                slopes[name] = by * share * (1.0 - share)
+        return -0.5 * float(left @ white[:, 0]) - log, {name: slopes[name] for name in x}
 
-    def foretold(self, u: np.ndarray, sizes: np.ndarray, memory: Memory) -> Foretold:
-        """The leave-one-out prediction of every reading."""
-        errors = ChainedErrors(self.chains, memory)
-        _, white = self._rows(errors, u, sizes)
+    def standardised(self, x: Mapping[str, float]) -> np.ndarray:
+        """Error (m,) of every reading's prediction from all others, over its standard deviation if the reading had weight 1."""
+        errors, _, _, white = self._rows(x)
         found = Informed.of_rows(white[:, 1:], white[:, 0])
         back = errors.back(np.column_stack([white[:, 0] - white[:, 1:] @ found.mean, white[:, 1:]]))
         alone = errors.known_from_others
         known = alone - np.sum((back[:, 1:] @ found.root) ** 2, axis=1)
         known = np.maximum(known, constants.LEAST_KNOWN * alone)
-        return Foretold(back[:, 0] / known, 1.0 / known, 1.0 / alone)
+        return np.asarray(back[:, 0] / known / np.sqrt(1.0 / known + (self.weight - 1.0) / alone))
 
-    def _rows(self, errors: ChainedErrors, u: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Residual and columns (m, 1 + k) over their uncertainties, and the same whitened."""
-        plain = np.column_stack([self.residual, self.columns * sizes]) / u[:, None]
-        return plain, errors.whiten(plain)
+    @property
+    def _counts(self) -> list[int]:
+        """Numbers of every term."""
+        return [one.shape[1] for one in self.columns.values()]
+
+    def _rows(self, x: Mapping[str, float]) -> _Rows:
+        errors, u = ChainedErrors(self.chains, Memory.of(x)), self.uncertainty(x)
+        sizes = np.repeat([math.exp(x.get(name, 0.0)) for name in self.columns], self._counts)
+        plain = (
+            np.column_stack([self.residual, np.column_stack([*self.columns.values()]) * sizes]) / u[:, None]
+        )
+        return _Rows(errors, u, plain, errors.whiten(plain))
+
+
+class _Rows(NamedTuple):
+    """Residual and columns (m, 1 + k) of a model."""
+
+    errors: ChainedErrors
+    u: np.ndarray  #: (m,)
+    plain: np.ndarray  #: over their uncertainties
+    white: np.ndarray  #: also whitened along the chains
