@@ -12,6 +12,7 @@ import numpy as np
 
 from mffit.as_json import keys
 from mffit.linearised.chained import ChainedErrors, Memory, chains_of
+from mffit.linearised.gaussian import Directions
 from mffit.points import Points
 from mffit.quantities import SIDEWAYS, column
 from mffit.scatter import finite_median, rms
@@ -62,28 +63,6 @@ class RunOffsets(NamedTuple):
     def beyond(self) -> float:
         """Log posterior odds of the offsets; negative if autocorrelation alone is more likely."""
         return self.log_odds - self.needed
-
-
-class SharedDirections(NamedTuple):
-    """Orthonormal directions along which whitened readings change together."""
-
-    axes: np.ndarray  #: (m, k) the directions
-    variance: np.ndarray  #: (k,) variances of the changes; a whitened reading has variance 1
-
-    def less(self, z: np.ndarray) -> np.ndarray:
-        """Differences (m,) or (m, j), whitened for these shared changes by a symmetric matrix."""
-        return self._along(z, 1.0 / np.sqrt(1.0 + self.variance) - 1.0)
-
-    def more(self, z: np.ndarray) -> np.ndarray:
-        """The inverse of :meth:`less`."""
-        return self._along(z, np.sqrt(1.0 + self.variance) - 1.0)
-
-    def power(self, rows: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Decrease of the sums of squares (j,) by :meth:`less` of differences that are 0 but for the ``rows``, ``z`` (i, j)."""
-        return (self.variance / (1.0 + self.variance)) @ (self.axes[rows].T @ z) ** 2
-
-    def _along(self, z: np.ndarray, gain: np.ndarray) -> np.ndarray:
-        return z + self.axes @ (gain * (self.axes.T @ z).T).T if len(gain) else z
 
 
 @dataclass(frozen=True)
@@ -167,15 +146,10 @@ class Noise(ReadOnlyArrays):
         return out
 
     @cached_property
-    def directions(self) -> SharedDirections:
+    def directions(self) -> Directions:
         """Directions of the shared changes among the used readings that D and M have whitened."""
-        if self.shared is None or not self.shared.shape[1]:
-            return SharedDirections(np.empty((len(self.used), 0)), np.empty(0))
-        white = self._independent(self.shared[self.used])
-        variance, turn = np.linalg.eigh(white.T @ white)
-        some = variance > 1e-9 * max(float(variance[-1]), 1e-9)
-        axes = white @ (turn[:, some] / np.sqrt(variance[some]))
-        return SharedDirections(axes, variance[some])
+        shared = np.zeros((len(self.u), 0)) if self.shared is None else self.shared
+        return Directions.of(self._independent(shared[self.used]))
 
     def _independent(self, x: np.ndarray) -> np.ndarray:
         """Differences of used readings (m,) or (m, k), whitened for D and M only."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from dataclasses import replace
-from functools import cached_property
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -14,7 +14,7 @@ from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.inexact import EXACT, Inexactness, slopes_of
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.priors import anchor, beyond_declaration, moving, number, starts, switched, usual_start
-from mffit.diagnosis.smooth import Smooth, StructureBeside
+from mffit.diagnosis.smooth import Smooth, SmoothStructure
 from mffit.effects import Effect, Free
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve, touches
 from mffit.left_out import moved_without
@@ -31,8 +31,8 @@ class DiagnosisProblem:
     """The comparison of readings with a simulation.
 
     ``declared`` has the value and standard uncertainty of each declared rig error. ``offset`` (c n,) is added to the readings if
-    ``start`` is not at the mean of the coefficients' prior. ``beside`` is smooth structure that the evidence of every hypothesis
-    allows for.
+    ``start`` is not at the mean of the coefficients' prior. ``beside`` (c n, k) is the basis of smooth structure that the
+    evidence of every hypothesis allows for.
     """
 
     def __init__(
@@ -42,10 +42,11 @@ class DiagnosisProblem:
         noise: Noise,
         declared: Mapping[str, tuple[float, float]] | None = None,
         offset: np.ndarray | None = None,
-        beside: StructureBeside | None = None,
+        beside: np.ndarray | None = None,
     ) -> None:
-        self.points, self.start, self.beside = points, start, beside
-        self.noise = noise if beside is None else beside.noise
+        self.points, self.start, self.noise = points, start, noise
+        self.structure = SmoothStructure(noise, np.zeros((len(noise.u), 0)) if beside is None else beside)
+        self.amplitude: Mapping[str, float] = {}  # of the structure in the covariance, by channel
         self.declared, self.offset = declared or {}, offset
         self.measured = noise.measured(points)
         if offset is not None:
@@ -69,15 +70,15 @@ class DiagnosisProblem:
     def at_amplitude(self, smooth: Smooth) -> DiagnosisProblem:
         """The problem with the amplitudes of smooth structure, as found with a hypothesis, in the covariance."""
         amplitude = smooth.amplitude if smooth.found else {}
-        if self.beside is None or amplitude == self.beside.amplitude:
+        if amplitude == self.amplitude:
             return self
         kept = self._at_amplitudes  # few amplitudes are tried, each beside many hypotheses
-        kept.setdefault(frozenset(self.beside.amplitude.items()), self)
+        kept.setdefault(frozenset(self.amplitude.items()), self)
         key = frozenset(amplitude.items())
         if key not in kept:
-            beside = replace(self.beside, amplitude=amplitude)
-            other = DiagnosisProblem(self.points, self.start, self.noise, self.declared, self.offset, beside)
-            other._at_amplitudes = kept
+            other = copy(self)
+            other.amplitude, other.noise = amplitude, self.structure.noise(amplitude)
+            other.null = other.evaluate((), {})
             while len(kept) >= constants.MOST_AMPLITUDES_KEPT:
                 del kept[next(iter(kept))]
             kept[key] = other
@@ -197,18 +198,13 @@ class DiagnosisProblem:
     def promising(self, before: Hypothesis, candidates: Sequence[Effect]) -> list[tuple[Effect, float]]:
         """The candidates with their gains of log evidence to first order, best first."""
         columns = self.columns(before.state, candidates)
-        beside = self._beside_or_nothing
         numbers = [number(free, before.numbers, self.start, self.points) for free in moving(before.effects)]
-        model, now = beside.structure.beside(*self._at_priors(before, numbers)), beside.amplitude
-        known, alone, out = model.evidence(now), beside.scatter.alone(), []
+        model, now = self.structure.beside(*self._at_priors(before, numbers)), self.amplitude
+        known, alone, out = model.evidence(now), self.structure.alone, []
         for effect, groups in columns.items():
             found = max(model.with_columns(alone.whiten(one)).evidence(now) for one in groups)
             out.append((effect, max(found - known, 0.0)))
         return sorted(out, key=lambda row: -row[1])
-
-    @cached_property
-    def _beside_or_nothing(self) -> StructureBeside:
-        return self.beside or StructureBeside.nothing(self.noise)
 
     def columns(self, state: Simulation, effects: Sequence[Effect]) -> dict[Effect, list[np.ndarray]]:
         """By effect, changes of the readings (c n, k) at its usual size: by derivatives, and by finite steps to each start."""
@@ -274,13 +270,14 @@ class DiagnosisProblem:
 
         The prior log odds against structure are ``STRUCTURE_EVIDENCE``.
         """
-        if self.beside is None:
+        if not self.structure.basis.shape[1]:
             return replace(fitted, alone=fitted.log_evidence)
         columns, residual = self._at_priors(fitted, numbers)
-        model, now = self.beside.structure.beside(columns, residual), self.beside.amplitude
+        model, now = self.structure.beside(columns, residual), self.amplitude
         found, alone = model.best(), fitted.log_evidence
         if now:
-            alone -= self.beside.half_log_determinant
+            alone -= self.noise.directions.half_log_determinant
+            alone += self.structure.scatter.directions.half_log_determinant
             alone -= model.evidence(now) + model.improbable(now) - model.evidence({})
         value = float(np.logaddexp(alone, alone + found.gain - constants.STRUCTURE_EVIDENCE))
         return replace(fitted, log_evidence=value, smooth=found, alone=alone)

@@ -17,6 +17,7 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.noise import MemorySpan, Noise, RunOffsets, Scatter
 from mffit.diagnosis.tails import beyond_weights, heavy_tails, weights
 from mffit.linearised.chained import Chained, Memory, chains_of
+from mffit.linearised.gaussian import Directions
 from mffit.linearised.search import (
     ParameterSearch,
     SearchedParameter,
@@ -217,10 +218,10 @@ def _same(one: Sequence[np.ndarray], other: Sequence[np.ndarray]) -> bool:
 
 def _condensed(columns: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Fewer equivalent columns, without directions of negligible change."""
-    columns = columns[:, np.any(columns != 0.0, axis=0)]
-    white = columns / u[:, None]
-    power, turn = np.linalg.eigh(white.T @ white)
-    return columns @ turn[:, power > constants.NEGLIGIBLE_CHANGE]
+    axes, variance = Directions.of(
+        columns[:, np.any(columns, axis=0)] / u[:, None], constants.NEGLIGIBLE_CHANGE
+    )
+    return axes * np.sqrt(variance) * u[:, None]
 
 
 def _at_least_of_a_rig(noise: Noise, size: np.ndarray) -> Noise:

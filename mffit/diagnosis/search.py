@@ -13,7 +13,7 @@ from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import NotVisible, OneSweep
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.smooth import StructureBeside, smooth_basis
+from mffit.diagnosis.smooth import smooth_basis
 from mffit.effects import CATALOG, Effect
 from mffit.linearised.constants import DIVISIONS_OF_A_SWEEP
 from mffit.points import Points
@@ -91,6 +91,6 @@ class Search:
         numbers = {name: state.number(name, self.points) for name in names}
         at = self.start.with_numbers(numbers) if numbers and state is not self.start else self.start
         moved = None if at is self.start else self.inexact.moved(self.points, state, at, self.channels)
-        shared = self.shared(noise, state)
-        beside = StructureBeside.over(self.structure, shared)
-        return DiagnosisProblem(self.points, at, shared, self.declared, moved, beside)
+        return DiagnosisProblem(
+            self.points, at, self.shared(noise, state), self.declared, moved, self.structure
+        )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ from scipy.linalg import block_diag
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import Noise
-from mffit.linearised.gaussian import Informed
+from mffit.linearised.gaussian import Directions, Informed
 from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
@@ -89,54 +89,44 @@ def _functions(conditions: Mapping[str, np.ndarray], divisions: float, n: int) -
     return found
 
 
-class ChannelDirections(NamedTuple):
-    """Orthonormal directions of the smooth changes of one channel among whitened readings."""
-
-    rows: slice  #: readings of the channel
-    axes: np.ndarray  #: (n, k)
-    variance: np.ndarray  #: (k,) variances of the changes at amplitude 1
-
-
 @dataclass(frozen=True, eq=False)
 class SmoothStructure(ReadOnlyArrays):
-    """Smooth structure that may be added to any hypothesis; all rows (m,) are whitened readings."""
+    """Structure that the evidence of every hypothesis of a problem allows for; its rows (m,) are whitened readings."""
 
-    channels: tuple[str, ...]  #: (c,)
+    scatter: Noise  #: noise with the other changes that readings share, without structure
     basis: np.ndarray  #: (c n, k) changes of the readings at amplitude 1, equally many for every channel
-    shared: np.ndarray  #: (m, p) changes that readings share, one standard deviation each
-    directions: tuple[ChannelDirections, ...]  #: by channel
-
-    @classmethod
-    def over(cls, basis: np.ndarray, noise: Noise) -> SmoothStructure:
-        """The structure of a basis (c n, k) with equally many columns for every channel, and the shared changes of a noise."""
-        alone, n = noise.alone(), len(noise.u) // len(noise.channels)
-        ends = np.searchsorted(noise.used, n * np.arange(len(noise.channels) + 1))
-        directions = []
-        for begin, end, columns in zip(
-            ends[:-1], ends[1:], np.split(basis, len(noise.channels), axis=1), strict=True
-        ):
-            rows = slice(int(begin), int(end))
-            left, size, _ = np.linalg.svd(alone.whiten(columns)[rows], full_matrices=False)
-            some = size > 1e-4 * max(float(size.max(initial=0.0)), 1e-9)
-            directions.append(ChannelDirections(rows, left[:, some], size[some] ** 2))
-        nothing = np.zeros((len(noise.used), 0))
-        shared = nothing if noise.shared is None else alone.whiten(noise.shared)
-        return cls(noise.channels, basis, shared, tuple(directions))
 
     @cached_property
-    def _alone(self) -> BesideColumns:
-        nothing = tuple(np.zeros((len(one.variance), 0)) for one in self.directions)
-        return BesideColumns(self, self.shared[:, :0], np.zeros((0, 0)), nothing).with_columns(self.shared)
+    def alone(self) -> Noise:
+        """The noise without any changes that readings share."""
+        return self.scatter.alone()
+
+    @cached_property
+    def directions(self) -> dict[str, tuple[slice, Directions]]:
+        """By channel, its rows and the directions of its structure."""
+        channels, n = self.scatter.channels, len(self.scatter.u) // len(self.scatter.channels)
+        ends = np.searchsorted(self.scatter.used, n * np.arange(len(channels) + 1)).tolist()
+        rows = map(slice, ends[:-1], ends[1:])
+        parts = np.split(self.alone.whiten(self.basis), len(channels), axis=1)
+        return {c: (own, Directions.of(x[own])) for c, own, x in zip(channels, rows, parts, strict=True)}
+
+    @cached_property
+    def shared(self) -> BesideColumns:
+        """The other changes that readings share, without a residual."""
+        shared = self.scatter.shared
+        white = self.alone.whiten(np.zeros((len(self.basis), 0)) if shared is None else shared)
+        nothing = tuple(np.zeros((len(of.variance), 0)) for _, of in self.directions.values())
+        return BesideColumns(self, white[:, :0], np.zeros((0, 0)), nothing).with_columns(white)
 
     def beside(self, columns: np.ndarray, residual: np.ndarray) -> BesideColumns:
         """The structure together with columns (m, j) of unit prior variance that may explain a residual (m,)."""
-        return self._alone.with_columns(np.column_stack([residual, columns]))
+        return self.shared.with_columns(np.column_stack([residual, columns]))
 
-    def at(self, amplitude: Mapping[str, float]) -> np.ndarray:
-        """Changes of the readings (c n, k), one standard deviation each, by structure of the channels with an amplitude."""
-        parts = np.split(self.basis, len(self.channels), axis=1)
-        found = (amplitude.get(name, 0.0) * part for name, part in zip(self.channels, parts, strict=True))
-        return np.column_stack([part[:, np.any(part, axis=0)] for part in found])
+    def noise(self, amplitude: Mapping[str, float]) -> Noise:
+        """The noise with structure of these amplitudes by channel, one standard deviation each."""
+        channels = self.scatter.channels
+        size = np.repeat([amplitude.get(c, 0.0) for c in channels], self.basis.shape[1] // len(channels))
+        return self.scatter.sharing(self.scatter.shared, (self.basis * size)[:, size > 0.0])
 
 
 class BesideColumns(NamedTuple):
@@ -155,22 +145,20 @@ class BesideColumns(NamedTuple):
             np.column_stack([self.rows, columns]),
             np.block([[self.products, across], [across.T, columns.T @ columns]]),
             tuple(
-                np.column_stack([along, one.axes.T @ columns[one.rows]])
-                for along, one in zip(self.along, self.structure.directions, strict=True)
+                np.column_stack([along, of.axes.T @ columns[own]])
+                for along, (own, of) in zip(self.along, self.structure.directions.values(), strict=True)
             ),
         )
 
     def evidence(self, amplitude: Mapping[str, float]) -> float:
         """Log evidence with the columns and with structure of given amplitudes by channel, up to a constant."""
         products, log = self.products, self.improbable(amplitude)
-        for name, along, one in zip(
-            self.structure.channels, self.along, self.structure.directions, strict=True
-        ):
+        for along, (name, (_, of)) in zip(self.along, self.structure.directions.items(), strict=True):
             if amplitude.get(name):
-                size = amplitude[name] ** 2 * one.variance
-                products = products - along.T @ ((size / (1.0 + size))[:, None] * along)
-                log += 0.5 * float(np.sum(np.log1p(size)))
-        r = self.structure.shared.shape[1]  # index of the residual
+                inside = Directions(of.axes, amplitude[name] ** 2 * of.variance)
+                products = products - along.T @ ((inside.variance / (1.0 + inside.variance))[:, None] * along)
+                log += inside.half_log_determinant
+        r = self.structure.shared.rows.shape[1]  # index of the residual
         others = np.delete(np.arange(len(products)), r)
         found = Informed.by(products[np.ix_(others, others)], products[others, r])
         return found.gain - 0.5 * float(products[r, r]) - log
@@ -181,7 +169,7 @@ class BesideColumns(NamedTuple):
 
     def best(self) -> Smooth:
         """The most likely amplitudes; the gain is reduced by a penalty for the search."""
-        channels = self.structure.channels
+        channels = self.structure.scatter.channels
         size, without = dict.fromkeys(channels, 0.0), self.evidence({})
         paid, gain = len(channels) * math.log(len(AMPLITUDES)), 0.0
         for channel in (*channels, *channels[:-1]):  # shared changes correlate the channels
@@ -191,33 +179,3 @@ class BesideColumns(NamedTuple):
                 if value > gain:
                     size, gain = trial, value
         return Smooth(size, gain)
-
-
-@dataclass(frozen=True, eq=False)
-class StructureBeside:
-    """Structure that the evidence of every hypothesis of a problem allows for, and its amplitudes in the covariance."""
-
-    scatter: Noise  #: noise with the other changes that readings share, without structure
-    structure: SmoothStructure
-    amplitude: Mapping[str, float] = field(default_factory=dict)  #: by channel, amplitude in the covariance
-
-    @classmethod
-    def over(cls, basis: np.ndarray, noise: Noise) -> StructureBeside:
-        """The structure of a basis, with none of it in the covariance."""
-        return cls(noise, SmoothStructure.over(basis, noise))
-
-    @classmethod
-    def nothing(cls, noise: Noise) -> StructureBeside:
-        """The empty structure."""
-        return cls.over(np.zeros((len(noise.u), 0)), noise)
-
-    @cached_property
-    def half_log_determinant(self) -> float:
-        """Half the log determinant of the covariance, less that without structure."""
-        after, before = (np.sum(np.log1p(one.directions.variance)) for one in (self.noise, self.scatter))
-        return 0.5 * float(after - before)
-
-    @cached_property
-    def noise(self) -> Noise:
-        """The noise with structure of these amplitudes."""
-        return self.scatter.sharing(self.scatter.shared, self.structure.at(self.amplitude))

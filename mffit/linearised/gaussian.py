@@ -8,11 +8,46 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs, dtrtri
 
 from tir.frozen import ReadOnlyArrays
+
+
+class Directions(NamedTuple):
+    """Orthonormal directions along which numbers of unit prior variance change readings whose errors have variance 1."""
+
+    axes: np.ndarray  #: (m, k) the directions
+    variance: np.ndarray  #: (k,) variances of the changes
+
+    @classmethod
+    def of(cls, columns: np.ndarray, least: float = 0.0) -> Directions:
+        """The directions of changes (m, j) by every number, without those of less than the ``least`` variance or of rounding."""
+        variance, turn = np.linalg.eigh(columns.T @ columns)
+        some = variance > max(least, 1e-9 * max(float(np.max(variance, initial=0.0)), 1e-9))
+        return cls(columns @ (turn[:, some] / np.sqrt(variance[some])), variance[some])
+
+    def less(self, z: np.ndarray) -> np.ndarray:
+        """Differences (m,) or (m, j), whitened for these changes by a symmetric matrix."""
+        return self._along(z, 1.0 / np.sqrt(1.0 + self.variance) - 1.0)
+
+    def more(self, z: np.ndarray) -> np.ndarray:
+        """The inverse of :meth:`less`."""
+        return self._along(z, np.sqrt(1.0 + self.variance) - 1.0)
+
+    def power(self, rows: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Decrease of the sums of squares (j,) by :meth:`less` of differences that are 0 but for the ``rows``, ``z`` (i, j)."""
+        return np.asarray((self.variance / (1.0 + self.variance)) @ (self.axes[rows].T @ z) ** 2)
+
+    @property
+    def half_log_determinant(self) -> float:
+        """Half the log determinant of the covariance of the readings."""
+        return 0.5 * float(np.sum(np.log1p(self.variance)))
+
+    def _along(self, z: np.ndarray, gain: np.ndarray) -> np.ndarray:
+        return z + self.axes @ (gain * (self.axes.T @ z).T).T if len(gain) else z
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ from mffit.diagnosis.inexact import EXACT
 from mffit.diagnosis.noise import Scatter
 from mffit.diagnosis.prediction import LeftOutPrediction
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.smooth import StructureBeside, smooth_basis
+from mffit.diagnosis.smooth import smooth_basis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
 from mffit.diagnosis.validation import gap, validate
 from mffit.diagnosis.where import where
@@ -65,8 +65,7 @@ def test_the_region_and_the_bump_are_in_the_channel_that_is_off(problem):
 def test_a_number_explains_no_more_than_there_is_however_steep_it_acts(problem, slope):
     """As a root at zero does, away from where it is expected, beside smooth structure of the same shape."""
     basis = smooth_basis(problem.points, problem.start.readings(problem.points, CHANNELS))
-    beside = StructureBeside.over(basis, problem.noise)
-    beside = DiagnosisProblem(problem.points, problem.start, problem.noise, beside=beside)
+    beside = DiagnosisProblem(problem.points, problem.start, problem.noise, beside=basis)
     null, change = beside.null, problem.noise.whiten(basis.sum(axis=1))
     steep = replace(null, numbers={"QCRP1": 0.0}, jacobian=slope * change[:, None])
     found = beside._weighed(steep, [FreeNumber("QCRP1", 0.0, 0.0, 2.0, expected=1.1, spread=1.0)])

@@ -8,7 +8,7 @@ from scipy.linalg import block_diag
 from scipy.stats import multivariate_normal
 
 from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.smooth import SmoothStructure, StructureBeside
+from mffit.diagnosis.smooth import SmoothStructure
 
 N = 30
 BASIS = block_diag(*np.random.default_rng(1).normal(size=(2, N, 5)))
@@ -32,7 +32,7 @@ def covariance(noise: Noise, columns: np.ndarray, Fy: float, Mz: float) -> np.nd
 def test_its_evidence_is_the_density_of_the_readings(noise):
     rng = np.random.default_rng(4)
     columns, readings = rng.normal(size=(2 * N, 3)), 3.0 * rng.normal(size=2 * N)
-    model = SmoothStructure.over(BASIS, noise).beside(columns / noise.u[:, None], readings / noise.u)
+    model = SmoothStructure(noise, BASIS).beside(columns / noise.u[:, None], readings / noise.u)
 
     def density(x: np.ndarray) -> float:
         whole = covariance(noise, columns, *np.exp(x))
@@ -48,20 +48,21 @@ def test_its_evidence_is_the_density_of_the_readings(noise):
 
 
 def test_structure_in_the_covariance_is_whitened_like_any_shared_change(noise):
-    beside = StructureBeside(noise, SmoothStructure.over(BASIS, noise), {"Mz": 0.7})
-    white = beside.noise.whiten(np.eye(2 * N))
+    beside = SmoothStructure(noise, BASIS).noise({"Mz": 0.7})
+    white = beside.whiten(np.eye(2 * N))
     whole = covariance(noise, np.zeros((2 * N, 0)), 0.0, 0.7)
     assert white @ whole @ white.T == pytest.approx(np.eye(2 * N), abs=1e-9)
     without = covariance(noise, np.zeros((2 * N, 0)), 0.0, 0.0)
     logs = [np.linalg.slogdet(one)[1] for one in (whole, without)]
-    assert beside.half_log_determinant == pytest.approx(0.5 * (logs[0] - logs[1]))
+    more = beside.directions.half_log_determinant - noise.directions.half_log_determinant
+    assert more == pytest.approx(0.5 * (logs[0] - logs[1]))
 
 
 @pytest.mark.parametrize(("size", "found"), [(0.0, False), (0.5, True)])
 def test_structure_is_found_where_the_readings_have_it(noise, size, found):
     rng = np.random.default_rng(5)
     readings = noise.u * rng.normal(size=2 * N) + size * 3.0 * BASIS[:, :5].sum(axis=1)
-    best = SmoothStructure.over(10.0 * BASIS, noise).beside(np.zeros((2 * N, 0)), readings / noise.u).best()
+    best = SmoothStructure(noise, 10.0 * BASIS).beside(np.zeros((2 * N, 0)), readings / noise.u).best()
     assert best.found is found
     if found:
         assert best.amplitude["Fy"] > 4.0 * best.amplitude["Mz"]
