@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from mffit.fit.priors import scatter
-from mffit.least_squares import LeastSquaresProblem, Linear, root
+from mffit.least_squares import root
 from mffit.points import Points
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
@@ -50,30 +50,14 @@ class Inexactness(ReadOnlyArrays):
         away = np.array([at.number(name, points) for name in self.names]) - self.expected
         return slopes_of(state, points, self.names, channels) @ away
 
-    @property
-    def precision(self) -> np.ndarray:
-        """A matrix (k, k) whose product with deviations from the mean has unit variance."""
-        return np.linalg.pinv(self.root)
+    def unit(self, n: int, spread: Sequence[float] | None = None) -> np.ndarray:
+        """Changes (n + k, n + k) of ``n`` other numbers by their spread, else by 1, then of these by one standard deviation."""
+        return np.asarray(block_diag(np.diag(np.ones(n) if spread is None else spread), self.root))
 
-    def added_to(self, problem: LeastSquaresProblem, first: int) -> LeastSquaresProblem:
-        """The problem with this prior as additional residuals of its numbers from index ``first`` on."""
-        precision = self.precision
-
-        def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            data, limits = problem.residual(x)
-            return np.concatenate([data, precision @ (x[first:] - self.expected)]), limits
-
-        def linear(x: np.ndarray) -> Linear:
-            here = problem.linear(x)
-            rows = np.hstack([np.zeros((len(precision), first)), precision])
-            return Linear(
-                data=np.concatenate([here.data, precision @ (x[first:] - self.expected)]),
-                slope=np.vstack([here.slope, rows]),
-                limits=here.limits,
-                limits_slope=here.limits_slope,
-            )
-
-        return LeastSquaresProblem(residual, linear)
+    def numbers(self, names: Sequence[str], x: np.ndarray) -> dict[str, float]:
+        """Other numbers by name, then these, from their values and from moves of these in standard deviations."""
+        own = self.expected + self.root @ x[len(names) :]
+        return dict(zip((*names, *self.names), [*x[: len(names)].tolist(), *own.tolist()], strict=True))
 
     def without(self, names: frozenset[str]) -> Inexactness:
         """The marginal prior of the other coefficients."""

@@ -137,13 +137,14 @@ class Noise(ReadOnlyArrays):
         channel, out = self.used // (len(self.u) // len(self.channels)), []
         for k, found in enumerate(self.scatter.values()):
             own = np.flatnonzero(channel == k)
-            chain, turn = self.chain, None
-            if found.span in self.longer:
-                chain, turn = self.longer[found.span], self.turn
-            rows = self.used[own]
-            chains = chains_of(chain[rows], None if turn is None else turn[rows])
+            chains = self.chains(self.used[own], found.span)
             out.append((own, ChainedErrors(chains, Memory(found.memory, found.independent))))
         return out
+
+    def chains(self, rows: np.ndarray, span: MemorySpan) -> list[np.ndarray]:
+        """Chains along which errors may be correlated, as positions among the ``rows`` (m,) of a channel."""
+        chain, turn = (self.longer[span], self.turn) if span in self.longer else (self.chain, None)
+        return chains_of(chain[rows], None if turn is None else turn[rows])
 
     @cached_property
     def directions(self) -> Directions:

@@ -13,8 +13,7 @@ from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.effects import Effect
-from mffit.left_out import needed_fall, over_scatter
-from mffit.linearised.mixed import Mixed, Variances
+from mffit.left_out import moved_without, needed_fall, over_scatter
 from tir.frozen import ReadOnlyArrays
 
 
@@ -58,13 +57,12 @@ class LeftOutPrediction:
         C, r = self._whitened(hypothesis)
         if more:
             C = np.column_stack([C, self.problem.noise.whiten(np.column_stack(more))])
-        groups = [np.flatnonzero(self.sweep == k) for k in range(self.sweeps)]
-        given = Variances(np.zeros(C.shape[1]), np.zeros(0), 0.0)
-        found = Mixed(r, C, np.zeros((len(r), 0)), groups).left_out(given, groups)
-        shape = self.sweeps, len(self.problem.channels)
-        square = np.zeros(shape)
-        for k, one in enumerate(found):
-            square[k] = np.bincount(self.channel[one.rows], one.error**2, minlength=shape[1])
+        information, gradient = np.eye(C.shape[1]) + C.T @ C, -C.T @ r
+        square = np.zeros((self.sweeps, len(self.problem.channels)))
+        for k, of_sweep in enumerate(square):
+            rows = np.flatnonzero(self.sweep == k)
+            error = r[rows] - C[rows] @ moved_without(C[rows], -r[rows], information, gradient)
+            of_sweep += np.bincount(self.channel[rows], error**2, minlength=len(of_sweep))
         return Predicted(square)
 
     def _whitened(self, hypothesis: Hypothesis) -> tuple[np.ndarray, np.ndarray]:

@@ -7,7 +7,6 @@ from copy import copy
 from dataclasses import replace
 
 import numpy as np
-from scipy.linalg import block_diag
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
@@ -138,22 +137,23 @@ class DiagnosisProblem:
         numbers, prior = self._refined_numbers(chosen, inexact)
         if not prior and numbers == usual:
             return chosen, {}
-        fixed = switched(chosen.effects)
-        numbers += [FreeNumber(name, self.start.number(name, self.points)) for name in prior.names]
+        fixed, own = switched(chosen.effects), [n.name for n in usual]
+        now = np.array([self.start.number(name, self.points) for name in prior.names])
+        begin = np.linalg.pinv(prior.root) @ (now - prior.expected)
+        units = [FreeNumber(n, x, spread=1.0) for n, x in zip(prior.names, begin.tolist(), strict=True)]
         plain = DiagnosisProblem(self.points, self.start, self.noise, self.declared)
-        problem = plain.within([n.name for n in numbers], fixed)
         found = solve(
-            prior.added_to(problem, first=len(usual)) if prior else problem,
-            numbers,
+            plain.within(own, fixed, prior),
+            [*numbers, *units],
             max_steps=constants.MOST_HYPOTHESIS_STEPS,
             tolerance=constants.HYPOTHESIS_CONVERGED,
         )
-        values, errors = {**fixed, **found.values}, self._standard_errors(found)
-        own = {name: values[name] for name in (*fixed, *(n.name for n in usual))}
+        values = {**fixed, **prior.numbers(own, found.x)}
+        errors = self._standard_errors(found, prior.unit(len(own)))
         refined = replace(
             chosen,
-            numbers=own,
-            stderr={name: errors[name] for name in own if name in errors},
+            numbers={name: values[name] for name in (*fixed, *own)},
+            stderr={name: errors[name] for name in own},
             state=self.start.with_numbers(values),
         )
         return refined, {name: (values[name], errors[name]) for name in prior.names}
@@ -179,18 +179,17 @@ class DiagnosisProblem:
         """
         numbers, prior = self._refined_numbers(refined, inexact)
         moved = [n for n in numbers if not touches(n.start, n.lower, n.upper)]
-        now = np.array([refined.state.number(name, self.points) for name in prior.names])
-        precision = prior.precision
-        information = block_diag(np.diag([n.spread**-2.0 for n in moved]), precision.T @ precision)
-        away = np.concatenate([[n.start - n.expected for n in moved], now - prior.expected])
         names = [*(n.name for n in moved), *prior.names]
+        mean = np.append([n.expected for n in moved], prior.expected)
+        away = np.array([refined.state.number(name, self.points) for name in names]) - mean
+        unit = prior.unit(len(moved), [n.spread for n in moved])
         slopes = slopes_of(refined.state, self.points, names, self.channels)
-        white, residual = self.noise.whiten(slopes), -self.whitened(refined.state)
-        gradient = information @ away + white.T @ residual
-        information = information + white.T @ white
+        white = self.noise.whiten(slopes @ unit)
+        residual = -self.whitened(refined.state) - self.noise.whiten(slopes @ away)  # at the prior means
+        information, gradient = np.eye(len(names)) + white.T @ white, white.T @ residual
         of_row = np.tile(group, len(self.channels))[self.noise.used]
         changes = [
-            moved_without(white[rows], residual[rows], information, gradient)
+            unit @ moved_without(white[rows], residual[rows], information, gradient) - away
             for rows in (np.flatnonzero(of_row == k) for k in range(int(group.max()) + 1))
         ]
         return names, slopes, changes
@@ -293,29 +292,36 @@ class DiagnosisProblem:
         found = self.noise.directions.more(np.column_stack([at_centre, columns]))
         return found[:, 1:], found[:, 0]
 
-    def _standard_errors(self, found: Solution) -> dict[str, float]:
-        """By name, standard errors that include the effect of estimated outlier weights."""
-        slope, beyond = found.jacobian.copy(), self.noise.beyond_weights
-        slope[: len(beyond)] *= beyond[:, None]  # rows of priors may follow
-        pull = slope @ found.covariance
-        variance = np.sum(pull**2, axis=0) + found.prior @ found.covariance**2
+    def _standard_errors(self, found: Solution, unit: np.ndarray | None = None) -> dict[str, float]:
+        """By name, standard errors that include the effect of estimated outlier weights.
+
+        ``unit`` (k, k) are the changes of the named numbers by those of the solution, if they differ.
+        """
+        moves = found.covariance if unit is None else found.covariance @ unit.T
+        pull = self.noise.beyond_weights[:, None] * found.jacobian @ moves
+        variance = np.sum(pull**2, axis=0) + found.prior @ moves**2
         return dict(zip(found.names, np.sqrt(variance).tolist(), strict=True))
 
-    def within(self, names: Sequence[str], fixed: Mapping[str, float]) -> LeastSquaresProblem:
-        """The least-squares problem of the whitened residual, simulated minus measured, in the named numbers."""
-        nothing = np.zeros(0)
+    def within(
+        self, names: Sequence[str], fixed: Mapping[str, float], prior: Inexactness = EXACT
+    ) -> LeastSquaresProblem:
+        """The least-squares problem of the whitened residual, simulated minus measured, in the named numbers.
+
+        Further numbers, independent and with prior variance 1, move the coefficients of ``prior``.
+        """
+        nothing, every, unit = np.zeros(0), [*names, *prior.names], prior.unit(len(names))
 
         def at(x: np.ndarray) -> Simulation:
-            return self.start.with_numbers({**fixed, **dict(zip(names, x.tolist(), strict=True))})
+            return self.start.with_numbers({**fixed, **prior.numbers(names, x)})
 
         def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             return -self.whitened(at(x)), nothing
 
         def linear(x: np.ndarray) -> Linear:
-            out, slope = at(x).sensitivities(self.points, names, self.channels)
+            out, slope = at(x).sensitivities(self.points, every, self.channels)
             rows = np.column_stack([out.stacked - self.measured, slope.stacked])
             white = self.noise.whiten(np.nan_to_num(np.where(np.isfinite(self.measured)[:, None], rows, 0.0)))
-            return Linear(white[:, 0], white[:, 1:], nothing, np.zeros((0, len(names))))
+            return Linear(white[:, 0], white[:, 1:] @ unit, nothing, np.zeros((0, len(every))))
 
         return LeastSquaresProblem(residual, linear)
 

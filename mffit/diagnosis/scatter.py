@@ -16,7 +16,7 @@ from mffit.constants import ASSUMED_NOISE_SHARE
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import MemorySpan, Noise, RunOffsets, Scatter
 from mffit.diagnosis.tails import beyond_weights, heavy_tails, weights
-from mffit.linearised.chained import Chained, Memory, chains_of
+from mffit.linearised.chained import Chained, Memory
 from mffit.linearised.gaussian import Directions
 from mffit.linearised.search import (
     ParameterSearch,
@@ -190,12 +190,11 @@ def _channel(
     noise: Noise, residual: np.ndarray, explained: ExplainingColumns, size: np.ndarray, rows: np.ndarray
 ) -> ScatterOfChannel:
     """The terms of the readings (c n,) in the ``rows`` (m,) of one channel."""
-    stated, turn = noise.stated[rows], None if noise.turn is None else noise.turn[rows]
-    chains = {MemorySpan.SWEEP: chains_of(noise.chain[rows])}
-    for span, chain in noise.longer.items():
-        longer = chains_of(chain[rows], turn)
-        if not any(_same(longer, known) for known in chains.values()):
-            chains[span] = longer
+    stated, chains = noise.stated[rows], dict[MemorySpan, list[np.ndarray]]()
+    for span in (MemorySpan.SWEEP, *noise.longer):
+        found = noise.chains(rows, span)
+        if not any(_same(found, known) for known in chains.values()):
+            chains[span] = found
     growing = constants.USUAL_GROWTH * np.nan_to_num(size[rows])
     least = 0.5 * constants.NO_NOISE_SHARE * rms(size[rows])  # for readings without noise
     terms = Chained(
