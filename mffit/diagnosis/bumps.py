@@ -3,26 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from mffit.constants import STRAIGHT, UPRIGHT
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.noise import Noise
-from mffit.points import Points, levels
+from mffit.diagnosis.where import Range, bins
+from mffit.points import Points
 from tir.frozen import ReadOnlyArrays
 
 SWEPT = {
-    "alpha_deg": constants.BUMP_WIDTHS_SIDESLIP,
-    "gamma_deg": constants.BUMP_WIDTHS_CAMBER,
-    "kappa": constants.BUMP_WIDTHS_SLIP,
+    "alpha_deg": (constants.BUMP_WIDTHS_SIDESLIP, ("gamma_deg", "Fz_N", "direction")),
+    "gamma_deg": (constants.BUMP_WIDTHS_CAMBER, ("Fz_N", "direction")),
+    "kappa": (constants.BUMP_WIDTHS_SLIP, ("alpha_deg", "gamma_deg", "Fz_N", "direction")),
 }
-"""By condition of ``mffit.quantities``, widths of the bumps; the smallest width is also the distance of their centres."""
-Ranges = dict[str, tuple[float, float]]
+"""By condition of ``mffit.quantities``, widths of the bumps, and variables to one bin of which they may be confined.
+
+The smallest width is also the distance of their centres.
+"""
+Ranges = dict[str, Range]
 """Column -> smallest and largest value."""
 
 
@@ -87,19 +90,16 @@ class BumpScan(ReadOnlyArrays):
 
 
 def bump_scan(points: Points, noise: Noise) -> BumpScan:
-    """Bumps over sideslip, camber or slip: in the whole programme, at one load, on one side of camber, or in backward runs.
-
-    Bumps over slip also on one side of sideslip.
-    """
-    parts = _parts(points)
-    beside = {"kappa": list(_sides("alpha_deg", points, STRAIGHT))}
-    shapes, regions = [], []
-    for column, centre, width, bell in _bells(points):
-        for region, mask in (*parts, *beside.get(column, ())):
-            shape = bell * mask
-            if np.sum(shape > 0.5) >= 2:
-                shapes.append(shape.astype(np.float32))
-                regions.append(_narrowed(region, column, centre - width, centre + width))
+    """Bumps over sideslip, camber or slip, in the whole programme or in one bin of another variable."""
+    shapes, regions, cells = [], [], bins(points)
+    for column, (widths, others) in SWEPT.items():
+        parts = [({name: limits}, mask) for name in others for limits, mask in cells.get(name, ())]
+        for region, bell in _bells(column, points, widths):
+            for part, mask in (({}, np.ones(len(points))), *parts):
+                shape = bell * mask
+                if np.sum(shape > 0.5) >= 2:
+                    shapes.append(shape.astype(np.float32))
+                    regions.append({**part, **region})
     spread = {
         name: constants.USUAL_MISS_OF_A_FORMULA * float(np.nanmax(np.abs(points.channel(name))))
         for name in noise.channels
@@ -109,56 +109,17 @@ def bump_scan(points: Points, noise: Noise) -> BumpScan:
     return BumpScan(noise, bumps, tuple(regions), spread)
 
 
-def _bells(points: Points) -> Iterator[tuple[str, float, float, np.ndarray]]:
-    """Column, centre, width and height (n,) of Gaussian bells along each swept condition, in the unit of its column."""
-    for column, widths in SWEPT.items():
-        values = points.condition(column)
-        if column == "kappa" and np.all(points.free_rolling):
-            continue
-        for centre in _centres(values, min(widths)):
-            for width in widths:
-                bell = np.exp(-0.5 * ((values - centre) / width) ** 2)
-                yield column, centre, width, bell
-
-
-def _narrowed(region: Ranges, column: str, low: float, high: float) -> Ranges:
-    """The region with the range of one column cut to the bump."""
-    before = region.get(column, (-np.inf, np.inf))
-    return {**region, column: (float(max(low, before[0])), float(min(high, before[1])))}
+def _bells(column: str, points: Points, widths: Sequence[float]) -> Iterator[tuple[Ranges, np.ndarray]]:
+    """Range and height (n,) of Gaussian bells along a swept condition, in the unit of its column."""
+    values = points.condition(column)
+    if column == "kappa" and np.all(points.free_rolling):
+        return
+    for centre in _centres(values, min(widths)).tolist():
+        for width in widths:
+            yield {column: (centre - width, centre + width)}, np.exp(-0.5 * ((values - centre) / width) ** 2)
 
 
 def _centres(values: np.ndarray, step: float) -> np.ndarray:
     """Centres of bumps: the values rounded to steps, or fewer evenly spaced ones if there are too many."""
     most, steps = constants.MOST_BUMP_CENTRES, np.unique(np.round(values / step) * step)
     return steps if len(steps) <= most else np.linspace(steps[0], steps[-1], most)
-
-
-def _parts(points: Points) -> list[tuple[Ranges, np.ndarray]]:
-    """Parts of the programme to which a bump may be confined, with their masks (n,)."""
-    return [
-        ({}, np.ones(len(points))),
-        *_sides("gamma_deg", points, UPRIGHT),
-        *_loads(points),
-        *(
-            [({"direction": (-1.0, -1.0)}, (points.direction < 0) * 1.0)]
-            if np.any(points.direction < 0)
-            else []
-        ),
-    ]
-
-
-def _sides(column: str, points: Points, middle: float) -> Iterator[tuple[Ranges, np.ndarray]]:
-    """Masks of the two sides of an angle and of the band within ``middle`` [deg] around zero."""
-    angle = points.condition(column)
-    for low, high in ((-90.0, -middle), (-middle, middle), (middle, 90.0)):
-        mask = (angle >= low) & (angle <= high)
-        if 2 <= mask.sum() < len(points):
-            yield {column: (max(low, float(angle.min())), min(high, float(angle.max())))}, mask * 1.0
-
-
-def _loads(points: Points) -> Iterator[tuple[Ranges, np.ndarray]]:
-    level = levels.nearest_labels(points.Fz, levels.LOAD)
-    number = int(level.max()) + 1
-    for k in range(number) if 1 < number <= constants.MOST_LOADS_WITH_BUMPS else ():
-        mask = level == k
-        yield {"Fz_N": (float(points.Fz[mask].min()), float(points.Fz[mask].max()))}, mask * 1.0

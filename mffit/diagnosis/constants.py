@@ -143,7 +143,6 @@ BUMP_WIDTHS_SLIP = Series(
     (0.01, 0.03), "-", "Widths of bumps over longitudinal slip: a tenth and a third of the slip at the peak."
 )
 MOST_BUMP_CENTRES = Count(41, "-", "Most centres of bumps along one angle.")
-MOST_LOADS_WITH_BUMPS = Count(7, "-", "Most loads for which bumps are sought load by load.")
 SMOOTH_AMPLITUDES = Series(
     (0.001, 0.3), "-", "Smallest and largest smooth amplitude over the channel's size."
 )

@@ -80,19 +80,19 @@ def _distinct(ranked: list[tuple[Region, frozenset[int]]]) -> tuple[Region, ...]
 
 def _cells(points: Points) -> Iterator[tuple[dict[str, Range], np.ndarray]]:
     """Ranges and masks (n,) of the bins of single variables and of pairs."""
-    bins = _bins(points)
-    for name, cells in bins.items():
+    found = bins(points)
+    for name, cells in found.items():
         for limits, mask in cells:
             yield {name: limits}, mask
     for a, b in PAIRS:
-        for limits_a, mask_a in bins.get(a, ()):
-            for limits_b, mask_b in bins.get(b, ()):
+        for limits_a, mask_a in found.get(a, ()):
+            for limits_b, mask_b in found.get(b, ()):
                 mask = mask_a & mask_b
                 if mask.sum() >= constants.FEWEST_READINGS_OF_A_REGION:
                     yield {a: limits_a, b: limits_b}, mask
 
 
-def _bins(points: Points) -> dict[str, list[tuple[Range, np.ndarray]]]:
+def bins(points: Points) -> dict[str, list[tuple[Range, np.ndarray]]]:
     """Bins of every variable that has at least two."""
     variables = {name: points.condition(name) for name in CONDITIONS}
     variables["direction"] = points.direction.astype(float)

@@ -129,10 +129,9 @@ def test_a_bump_is_found_with_its_place_and_size(channel, column, centre, only):
 def test_a_bump_is_a_bell_of_its_width():
     """exp(-1/2) of its height one width beside its centre, on both sides."""
     points = make_points(np.radians(np.arange(-8.0, 8.01, 0.25)), 0.0, 1500.0, p=250e3, V=6.0, phi_t=0.0)
-    shapes = [shape for shape in _bells(points) if shape[0] == "alpha_deg" and abs(shape[1]) < 3.0]
-    assert shapes
-    for _, centre, width, height in shapes:
-        away = np.abs(np.degrees(points.alpha) - centre) / width
+    for region, height in _bells("alpha_deg", points, (1.0, 2.0)):
+        low, high = region["alpha_deg"]
+        away = np.abs(np.degrees(points.alpha) - 0.5 * (low + high)) / (0.5 * (high - low))
         np.testing.assert_allclose(height[away <= 1.0], np.exp(-0.5 * away[away <= 1.0] ** 2), rtol=1e-9)
         assert np.all(height[away > 1.0] < np.exp(-0.5))
 
