@@ -22,7 +22,6 @@ from mffit.diagnosis.repair import Confirmed, Repair
 from mffit.diagnosis.rest import Answer, Rest
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis, apart
 from mffit.diagnosis.search import Search
-from mffit.diagnosis.tails import outlying
 from mffit.diagnosis.ties import separation
 from mffit.diagnosis.validation import Gap, gap, validate
 from mffit.diagnosis.where import Region, where
@@ -141,13 +140,12 @@ def _bump_region(bump: Bump) -> Region:
 
 
 def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier, ...]:
-    """The readings with nearly zero weight that are also far from the explained model."""
+    """The readings far from the explained model, in channels with heavy tails."""
     if noise.weight is None:
         return ()
-    usual = noise.u * np.sqrt(noise.weight)
-    off = np.abs(noise.measured(points) - after)
-    used = usual.copy()
-    used[[i for i in outlying(noise) if off[i] > constants.DIAGNOSED_OUTLIER_RATIO * usual[i]]] = np.inf
+    usual, away = noise.u * np.sqrt(noise.weight), np.abs(noise.measured(points) - after)
+    far = (noise.weight < 1.0) & (away > constants.DIAGNOSED_OUTLIER_RATIO * usual)
+    used = np.where(far, np.inf, usual)
     return outliers(points, *(Readings.split(rows, noise.channels) for rows in (usual, used, after)))
 
 

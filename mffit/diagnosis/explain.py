@@ -13,7 +13,7 @@ from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.imitation import imitations
 from mffit.diagnosis.inexact import Inexactness
-from mffit.diagnosis.learning import beyond_memory, learned_noise, settled
+from mffit.diagnosis.learning import beyond_memory, learned_noise
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.prediction import LeftOutPrediction, chosen_by_prediction, judged
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
@@ -106,10 +106,8 @@ def _of_fitted_model(search: Search) -> Explanation:
         if last is not None and found.chosen.ids == last.chosen.ids:
             break
         lost = bool(noise.offset) and not noise.offset & found.chosen.ids
-        without_offsets, before = without_offsets or lost, noise
+        without_offsets = without_offsets or lost
         noise = learned_noise(search, found.without_run_offsets, without_offsets=without_offsets)
-        if last is not None and settled(before, noise) and not lost:
-            break
     assert found is not None
     return found
 

@@ -53,16 +53,3 @@ def beyond_memory(noise: Noise, candidates: Sequence[Effect]) -> list[Effect]:
             wider = max(offsets.size, 1.0)
             kept.append(replace(effect, free=tuple(replace(f, spread=wider * f.spread) for f in effect.free)))
     return kept
-
-
-def settled(before: Noise, after: Noise) -> bool:
-    """Whether the scatter changed so little that effects need not be selected again."""
-    used = after.used
-    change = np.abs(np.log(after.u[used] / before.u[used]))
-    memory = [abs(after.scatter[c].memory - before.scatter[c].memory) for c in after.channels]
-    spans = [after.scatter[c].span is before.scatter[c].span for c in after.channels]
-    return not (
-        not all(spans)
-        or np.median(change) > constants.SCATTER_SETTLED
-        or max(memory) > constants.SCATTER_SETTLED
-    )

@@ -22,6 +22,7 @@ from mffit.scatter import rms
 from tir.frozen import ReadOnlyArrays
 
 SMALLEST, LARGEST = constants.SMOOTH_AMPLITUDES
+ANGLES = ("alpha", "gamma")
 AMPLITUDES = np.geomspace(SMALLEST, LARGEST, constants.SMOOTH_AMPLITUDES_TRIED)
 
 
@@ -50,9 +51,9 @@ def smooth_basis(
     readings. Changes of gain are proportional to the ``simulated`` readings, because the measured ones contain the errors to be
     explained.
     """
-    angles, others = _conditions(points)
-    shapes = _functions({**angles, **others}, divisions, len(points))
-    gains = _functions(others, divisions, len(points))[:, 1:]
+    inputs, at = _conditions(points, divisions)
+    angles = sum(one.name in ANGLES for one in inputs)
+    shapes, gains = _functions(inputs, at), _functions(inputs[angles:], at[:, angles:])[:, 1:]
     rows = []
     for name, model in simulated.items():
         size = float(np.nan_to_num(rms(points.channel(name))))
@@ -61,31 +62,26 @@ def smooth_basis(
     return block_diag(*rows)
 
 
-def _conditions(points: Points) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-    """The varying angles, and the other varying conditions over which structure may be smooth, by name."""
-    angles = {"alpha": points.alpha, "gamma": points.gamma}
-    others = {name: getattr(points, name).astype(float) for name in ("p", "T", "V", "t", "direction")}
-    varying = [
-        {name: x for name, x in group.items() if np.any(np.isfinite(x)) and np.nanmax(x) > np.nanmin(x)}
-        for group in (angles, {"Fz": np.log(points.Fz), **others})
-    ]
-    return varying[0], varying[1]
+def _conditions(points: Points, divisions: float) -> tuple[tuple[Input, ...], np.ndarray]:
+    """The varying conditions, angles first, and their values (n, d); the middle of the range where one is unknown."""
+    most = dict.fromkeys(ANGLES, divisions) | {"Fz": 2, "p": 1, "T": 1, "V": 1, "t": 2, "direction": 1}
+    inputs, at = [], [np.zeros((len(points), 0))]
+    for name, steps in most.items():
+        x = np.log(points.Fz) if name == "Fz" else getattr(points, name).astype(float)
+        known = x[np.isfinite(x)]
+        lower, upper = (float(end(known)) if len(known) else 0.0 for end in (np.min, np.max))
+        if upper > lower:
+            distinct = len(np.unique(np.round((known - lower) / (upper - lower), 2))) - 1
+            inputs.append(Input(name, lower, upper, (upper - lower) / max(min(steps, distinct), 1)))
+            at.append(np.where(np.isfinite(x), x, 0.5 * (lower + upper))[:, None])
+    return tuple(inputs), np.hstack(at)
 
 
-def _functions(conditions: Mapping[str, np.ndarray], divisions: float, n: int) -> np.ndarray:
-    """Smooth functions (n, k) of some conditions, the constant first; unknown values are replaced by the middle of the range."""
-    inputs, at = [], []
-    for name, x in conditions.items():
-        lower, upper = float(np.nanmin(x)), float(np.nanmax(x))
-        steps = {"alpha": divisions, "gamma": divisions, "t": 2, "Fz": 2}
-        distinct = len(np.unique(np.round((x[np.isfinite(x)] - lower) / (upper - lower), 2))) - 1
-        inputs.append(Input(name, lower, upper, (upper - lower) / max(min(steps.get(name, 1), distinct), 1)))
-        at.append(np.where(np.isfinite(x), x, 0.5 * (lower + upper)))
-    if not inputs:
-        return np.ones((n, 1))
-    functions = SmoothFunctions.over(tuple(inputs))
+def _functions(inputs: tuple[Input, ...], at: np.ndarray) -> np.ndarray:
+    """Smooth functions (n, k) of some conditions, the constant first."""
+    functions = SmoothFunctions.over(inputs)
     share, _ = functions.log_variance(np.array([one.spacing for one in inputs]))
-    found: np.ndarray = functions.columns(np.column_stack(at)) * np.exp(0.5 * share)
+    found: np.ndarray = functions.columns(at) * np.exp(0.5 * share)
     return found
 
 

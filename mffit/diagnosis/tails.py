@@ -7,7 +7,6 @@ import math
 import numpy as np
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.noise import Noise
 from mffit.scatter import rms, robust
 
 
@@ -45,15 +44,3 @@ def beyond_weights(z: np.ndarray, tails: float) -> float:
     weight = weights(z, tails, 1.0)
     slope = weight * (tails - z**2) / (tails + z**2)
     return max(1.0, rms(weight * z) * math.sqrt(float(np.mean(weight))) / float(np.mean(slope)))
-
-
-def outlying(noise: Noise) -> np.ndarray:
-    """Indices of the readings with nearly zero weight."""
-    if noise.weight is None:
-        return np.empty(0, dtype=int)
-    n = len(noise.weight) // len(noise.channels)
-    tails = np.repeat([found.tails for found in noise.scatter.values()], n)
-    heavy = np.isfinite(tails) & np.isfinite(noise.stated)
-    known = np.where(heavy, tails, 1.0)
-    lost = noise.weight < (known + 1.0) / (known + constants.DIAGNOSED_OUTLIER_RATIO**2)
-    return np.flatnonzero(heavy & lost)
