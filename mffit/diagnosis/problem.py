@@ -194,17 +194,6 @@ class DiagnosisProblem:
         ]
         return names, slopes, changes
 
-    def promising(self, before: Hypothesis, candidates: Sequence[Effect]) -> list[tuple[Effect, float]]:
-        """The candidates with their gains of log evidence to first order, best first."""
-        columns = self.columns(before.state, candidates)
-        numbers = [number(free, before.numbers, self.start, self.points) for free in moving(before.effects)]
-        model, now = self.structure.beside(*self._at_priors(before, numbers)), self.amplitude
-        known, alone, out = model.evidence(now), self.structure.alone, []
-        for effect, groups in columns.items():
-            found = max(model.with_columns(alone.whiten(one)).evidence(now) for one in groups)
-            out.append((effect, max(found - known, 0.0)))
-        return sorted(out, key=lambda row: -row[1])
-
     def columns(self, state: Simulation, effects: Sequence[Effect]) -> dict[Effect, list[np.ndarray]]:
         """By effect, changes of the readings (c n, k) at its usual size: by derivatives, and by finite steps to each start."""
         names = [free.name for free in moving(effects)]

@@ -67,8 +67,8 @@ def select(
 def contest(problem: DiagnosisProblem, before: Hypothesis, candidates: Sequence[Effect]) -> Contest:
     """Every candidate in addition to the effects of ``before``; those that gain much to first order are fitted in full."""
     trials = []
-    ranked = problem.with_structure_of(before)
-    gains = ranked[0].promising(ranked[1], [e for e in candidates if e.id not in before.ids])
+    sets = LinearSets(*problem.with_structure_of(before), candidates)
+    gains = sets.gains(sets.of(before.effects))
     for rank, (effect, gain) in enumerate(gains):
         effects = (*before.effects, effect)
         if rank < constants.CANDIDATES_FITTED and gain >= constants.WORTH_FITTING * gains[0][1]:

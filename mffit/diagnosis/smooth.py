@@ -93,30 +93,31 @@ class SmoothStructure(ReadOnlyArrays):
     basis: np.ndarray  #: (c n, k) changes of the readings at amplitude 1, equally many for every channel
 
     @cached_property
-    def alone(self) -> Noise:
-        """The noise without any changes that readings share."""
-        return self.scatter.alone()
-
-    @cached_property
     def directions(self) -> dict[str, tuple[slice, Directions]]:
         """By channel, its rows and the directions of its structure."""
         channels, n = self.scatter.channels, len(self.scatter.u) // len(self.scatter.channels)
         ends = np.searchsorted(self.scatter.used, n * np.arange(len(channels) + 1)).tolist()
         rows = map(slice, ends[:-1], ends[1:])
-        parts = np.split(self.alone.whiten(self.basis), len(channels), axis=1)
+        parts = np.split(self.scatter.alone().whiten(self.basis), len(channels), axis=1)
         return {c: (own, Directions.of(x[own])) for c, own, x in zip(channels, rows, parts, strict=True)}
 
     @cached_property
-    def shared(self) -> BesideColumns:
-        """The other changes that readings share, without a residual."""
+    def _shared(self) -> tuple[np.ndarray, BesideColumns]:
+        """The other changes that readings share, whitened without them (m, p), and their products."""
         shared = self.scatter.shared
-        white = self.alone.whiten(np.zeros((len(self.basis), 0)) if shared is None else shared)
-        nothing = tuple(np.zeros((len(of.variance), 0)) for _, of in self.directions.values())
-        return BesideColumns(self, white[:, :0], np.zeros((0, 0)), nothing).with_columns(white)
+        white = self.scatter.alone().whiten(np.zeros((len(self.basis), 0)) if shared is None else shared)
+        return white, self._products(white)
+
+    def _products(self, rows: np.ndarray) -> BesideColumns:
+        along = tuple(of.axes.T @ rows[own] for own, of in self.directions.values())
+        return BesideColumns(self, rows.T @ rows, along)
 
     def beside(self, columns: np.ndarray, residual: np.ndarray) -> BesideColumns:
         """The structure together with columns (m, j) of unit prior variance that may explain a residual (m,)."""
-        return self.shared.with_columns(np.column_stack([residual, columns]))
+        (shared, known), rows = self._shared, np.column_stack([residual, columns])
+        new, across = self._products(rows), rows.T @ shared
+        products = np.block([[new.products, across], [across.T, known.products]])
+        return BesideColumns(self, products, tuple(map(np.hstack, zip(new.along, known.along, strict=True))))
 
     def noise(self, amplitude: Mapping[str, float]) -> Noise:
         """The noise with structure of these amplitudes by channel, one standard deviation each."""
@@ -129,22 +130,8 @@ class BesideColumns(NamedTuple):
     """Products from which the evidence for any amplitude of structure is computed."""
 
     structure: SmoothStructure
-    rows: np.ndarray  #: (m, p + 1 + j) the shared changes, the residual, the columns
-    products: np.ndarray  #: (p + 1 + j, p + 1 + j) products of ``rows``
-    along: tuple[np.ndarray, ...]  #: by channel, projections (k, p + 1 + j) of ``rows`` on its directions
-
-    def with_columns(self, columns: np.ndarray) -> BesideColumns:
-        """The record extended by further columns (m, i)."""
-        across = self.rows.T @ columns
-        return BesideColumns(
-            self.structure,
-            np.column_stack([self.rows, columns]),
-            np.block([[self.products, across], [across.T, columns.T @ columns]]),
-            tuple(
-                np.column_stack([along, of.axes.T @ columns[own]])
-                for along, (own, of) in zip(self.along, self.structure.directions.values(), strict=True)
-            ),
-        )
+    products: np.ndarray  #: (1 + j + p, 1 + j + p) of the residual, the columns and the shared changes
+    along: tuple[np.ndarray, ...]  #: by channel, projections (k, 1 + j + p) of these on its directions
 
     def evidence(self, amplitude: Mapping[str, float]) -> float:
         """Log evidence with the columns and with structure of given amplitudes by channel, up to a constant."""
@@ -154,10 +141,8 @@ class BesideColumns(NamedTuple):
                 inside = Directions(of.axes, amplitude[name] ** 2 * of.variance)
                 products = products - along.T @ ((inside.variance / (1.0 + inside.variance))[:, None] * along)
                 log += inside.half_log_determinant
-        r = self.structure.shared.rows.shape[1]  # index of the residual
-        others = np.delete(np.arange(len(products)), r)
-        found = Informed.by(products[np.ix_(others, others)], products[others, r])
-        return found.gain - 0.5 * float(products[r, r]) - log
+        found = Informed.by(products[1:, 1:], products[1:, 0])
+        return found.gain - 0.5 * float(products[0, 0]) - log
 
     def improbable(self, amplitude: Mapping[str, float]) -> float:
         """Negative log prior of the amplitudes, relative to none."""

@@ -93,6 +93,14 @@ class LinearSets:
         """Log posterior of a set up to a constant: evidence, price of every effect, and prior order of causes."""
         return self._solved(members)[0]
 
+    def gains(self, members: Members) -> list[tuple[Effect, float]]:
+        """The effects that a set lacks with the log evidence that each adds, best first."""
+        known, out = self.weight(members), dict[Effect, float]()
+        for k in self._absent(members):
+            effect, gain = self.members[k].effect, self.weight(_with(members, k)) - self._price[k] - known
+            out[effect] = max(gain, out.get(effect, 0.0))
+        return sorted(out.items(), key=lambda row: -row[1])
+
     def _solved(self, members: Members) -> tuple[float, np.ndarray]:
         if members not in self._known:
             self._known[members] = self._solve(members)

@@ -12,6 +12,7 @@ from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.needs import possible
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.stated import stated_noise
+from mffit.diagnosis.subsets import LinearSets
 from mffit.effects import CATALOG, OF_CHANNEL
 from mffit.fit.plan import channels_of
 from mffit.report import text
@@ -33,7 +34,7 @@ def gains(effect: str, folder, added=()) -> dict[str, float]:
     start = Simulation.of(given, turn_slip=False)
     problem = DiagnosisProblem(read, start, stated_noise(read, channels=channels_of(read)))
     candidates, _ = possible(CATALOG, read, start)
-    return {found.id: gain for found, gain in problem.promising(problem.null, candidates)}
+    return {found.id: gain for found, gain in LinearSets(problem, problem.null, candidates).gains(())}
 
 
 @pytest.mark.parametrize("effect", HIDDEN)
