@@ -13,6 +13,7 @@ from mffit.config import Config
 from mffit.config.rig_declaration import declared_rig
 from mffit.constants import COVERAGE_FACTOR_95, EXPLAINED_SHARE, FALSE_ALARM, USUAL_CORNERING_STIFFNESS
 from mffit.fit.plan import channels_of
+from mffit.linearised.gaussian import Informed
 from mffit.points import Points
 from mffit.points.noise import estimated_noise, stating
 from mffit.rig import Simulation
@@ -83,13 +84,12 @@ def explained_by_rig(
         gap.append(rest[known] / u[known])
         columns.append(slopes[name][known] * spread / u[known, None])
     seen, moved = np.concatenate(gap), np.concatenate(columns)
-    covariance = np.linalg.inv(moved.T @ moved + np.eye(len(declared)))
-    size, u_size = covariance @ (moved.T @ seen), np.sqrt(np.diag(covariance))
-    n, before = len(seen), float(seen @ seen)
-    after = float(np.sum((seen - moved @ size) ** 2) + size @ size)
+    found = Informed.of_rows(moved, seen)
+    size, n, before = found.mean, len(seen), float(seen @ seen)
+    after = before - float(found.pull @ size)
     errors = {
         name: Quantity(float(x * u), float(u_x * u), "")
-        for name, x, u_x, u in zip(declared, size, u_size, spread, strict=True)
+        for name, x, u_x, u in zip(declared, size, found.u, spread, strict=True)
         if abs(x) > COVERAGE_FACTOR_95 * u_x
     }
     return ExplainedByRig(

@@ -6,7 +6,7 @@ The modules in the order of the method (:mod:`engine` is the sequence):
 2. ``stated``, ``noise``: stated covariance of the readings. ``inexact``, ``priors``: priors of coefficients and rig.
 3. ``where``: regions in which measurement and simulation disagree.
 4. ``needs``, ``problem``, ``hypothesis``: candidates, and the fit and evidence of a set of effects.
-5. ``search``, ``explain``: all effects fitted together, then the noise around them: ``learning``, ``scatter``, ``tails``
+5. ``search``, ``explain``: all effects fitted together, then the noise around them: ``scatter``, ``tails``
    estimate its size, its autocorrelation and offsets of runs. ``selection`` finds the most probable set of effects from the
    evidence of all sets (``subsets``), in competition with unnamed structure (``smooth``, ``bumps``); ``prediction`` judges
    effects by left-out sweeps.

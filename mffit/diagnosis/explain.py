@@ -13,10 +13,10 @@ from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.imitation import imitations
 from mffit.diagnosis.inexact import Inexactness
-from mffit.diagnosis.learning import beyond_memory, learned_noise
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.prediction import LeftOutPrediction, chosen_by_prediction, judged
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
+from mffit.diagnosis.scatter import beyond_memory, learned_noise
 from mffit.diagnosis.search import Search
 from mffit.diagnosis.selection import select
 from mffit.effects import Effect

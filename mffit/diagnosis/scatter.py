@@ -15,7 +15,10 @@ import numpy as np
 from mffit.constants import ASSUMED_NOISE_SHARE
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import MemorySpan, Noise, RunOffsets, Scatter
+from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.search import Search
 from mffit.diagnosis.tails import beyond_weights, heavy_tails, weights
+from mffit.effects import Effect
 from mffit.linearised.chained import Chained, Memory
 from mffit.linearised.gaussian import Directions
 from mffit.linearised.search import (
@@ -26,6 +29,7 @@ from mffit.linearised.search import (
     normal,
     uniform,
 )
+from mffit.rig import Simulation
 from mffit.scatter import rms
 from tir.frozen import ReadOnlyArrays
 
@@ -151,6 +155,29 @@ class ScatterOfChannel(ReadOnlyArrays):
         )
         terms = Chained(self.terms.residual[rows], columns, noise, (), self.terms.weight[rows])
         return ScatterOfChannel(terms, chains, self.sweep[rows])
+
+
+def learned_noise(search: Search, state: Simulation, *, without_offsets: bool = False) -> Noise:
+    """The noise with the scatter around ``state`` that remains if all candidates, coefficients and structure may explain it.
+
+    ``without_offsets``: runs have no offsets.
+    """
+    points = search.points
+    stated = search.stated.without(state.floats(points))
+    problem = DiagnosisProblem(points, state, stated)
+    predicted = np.nan_to_num(problem.predict(state))
+    residual = problem.measured - predicted
+    nothing = np.zeros((len(predicted), 0))
+    # The derivative by each effect, and its first finite step for numbers whose derivative vanishes at zero.
+    columns = {e: groups[:2] for e, groups in problem.columns(state, search.candidates).items()}
+    runs = {e.id: g[0] for e, g in columns.items() if e.differs_by_run}
+    others = [g for e, groups in columns.items() if not e.differs_by_run for g in groups]
+    generous = constants.GENEROUS_EFFECT_SIZE
+    named = np.column_stack(
+        [nothing, *(generous * g for g in others), search.inexact.columns(points, state, problem.channels)]
+    )
+    explained = ExplainingColumns(named=named, runs=runs, smooth=search.coarse, withdrawn=without_offsets)
+    return learned(stated, residual, explained, predicted)
 
 
 def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, size: np.ndarray) -> Noise:
@@ -320,3 +347,19 @@ def _descriptions(channel: ScatterOfChannel, only: MemorySpan | None = None) -> 
 
 def _log_sum(found: Sequence[Described]) -> float:
     return float(np.logaddexp.reduce([one.log_probability for one in found]))
+
+
+def beyond_memory(noise: Noise, candidates: Sequence[Effect]) -> list[Effect]:
+    """The candidates without offsets of runs that autocorrelated errors explain as well.
+
+    Offsets that are significant beyond the autocorrelation get the size that was estimated together with it as spread.
+    """
+    kept = []
+    for effect in candidates:
+        offsets = noise.offsets.get(effect.id)
+        if offsets is None:
+            kept.append(effect)
+        elif effect.id in noise.offset:
+            wider = max(offsets.size, 1.0)
+            kept.append(replace(effect, free=tuple(replace(f, spread=wider * f.spread) for f in effect.free)))
+    return kept

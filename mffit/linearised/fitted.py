@@ -91,10 +91,6 @@ class LinearisedChannel(ReadOnlyArrays):
         settings = np.where(np.isfinite(settings), settings, middle)
         return self.smooth.faded(settings, np.array(self.components.lengths))
 
-    def left_out(self, rows: Sequence[np.ndarray] | None = None) -> list[LeftOutReadings]:
-        """Prediction of each sweep from all others, or of each set of ``rows`` (positions in :attr:`rows`)."""
-        return self._left_out(self.model, self.variances, self.model.groups if rows is None else rows)
-
     def without_runs(self, rows: Sequence[np.ndarray], *, missed: bool) -> list[LeftOutReadings]:
         """Prediction of each set of ``rows`` from all other readings in a model without random effects of the runs.
 
@@ -102,7 +98,7 @@ class LinearisedChannel(ReadOnlyArrays):
         """
         functions = len(self.missed)
         noise = self.components.noise if missed else robust(self.model.residual)
-        given = self.variances._replace(own=self._alike, noise=2.0 * float(np.log(max(noise, 1.0))))
+        given = self.variances.alike._replace(noise=2.0 * float(np.log(max(noise, 1.0))))
         if missed:
             return self._left_out(self.model, given, rows)
         plain = replace(self.model, common=self.model.common[:, functions:])
@@ -122,11 +118,6 @@ class LinearisedChannel(ReadOnlyArrays):
         given = terms.variances(replace(self.components, lengths=lengths))
         (found,) = self._left_out(self.model, given, [rows])
         return found
-
-    @property
-    def _alike(self) -> np.ndarray:
-        """Log variances that practically switch off the random effects of the runs."""
-        return np.full(len(self.variances.own), 2.0 * np.log(1e-6 * float(np.median(self.unit))))
 
     @cached_property
     def proof_of_noise(self) -> float:

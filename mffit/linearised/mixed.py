@@ -20,6 +20,9 @@ from tir.frozen import ReadOnlyArrays
 ROUNDING = 1e-13
 """Rounding error of a difference of sums of products relative to the sums; such a difference can become negative."""
 
+HELD = -60.0
+"""Log variance of a number that is practically held."""
+
 
 class Variances(NamedTuple):
     """Log variances of the priors and of the noise."""
@@ -27,6 +30,11 @@ class Variances(NamedTuple):
     common: np.ndarray  #: (m,) of the common numbers
     own: np.ndarray  #: (q,) of the random effects
     noise: float  #: of the noise, relative to the stated variance
+
+    @property
+    def alike(self) -> Variances:
+        """The same without random effects."""
+        return self._replace(own=np.full(len(self.own), HELD))
 
 
 class MixedEvidence(NamedTuple):
@@ -224,6 +232,10 @@ class LeftOutReadings(NamedTuple):
     rows: np.ndarray  #: (k,) indices of the readings
     error: np.ndarray  #: (k,) measured less predicted
     covariance: np.ndarray  #: (k, k) of the error: from prediction, random effects and noise
+
+    def chi2(self, left: np.ndarray) -> float:
+        """Sum of squares of remaining errors (k,) in units of the covariance."""
+        return float(left @ np.linalg.solve(self.covariance, left))
 
     @property
     def log_density(self) -> float:

@@ -87,8 +87,8 @@ def _growth(fitted: Fitted, temperature: Nuisance) -> dict[str, float]:
     near = NearSolution(fitted.problem, numbers, ())
     joint = near.joint(fitted.problem.points.sweep, [temperature])
     free, known = (
-        np.sum(joint.model.posterior(found.given).root ** 2, axis=1)
-        for found in (joint.alike(), joint.alike(temperature.numbers))
+        np.sum(joint.model.posterior(given).root ** 2, axis=1)
+        for given in (joint.alike(), joint.alike(temperature.numbers))
     )
     return {
         name: float(np.sqrt(more / less))

@@ -16,16 +16,13 @@ from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber
 from mffit.left_out import needed_fall, over_scatter
 from mffit.linearised.constants import POINTS_EXAMINED
-from mffit.linearised.mixed import FurtherColumns, LeftOutReadings, Mixed, Variances
+from mffit.linearised.mixed import HELD, FurtherColumns, LeftOutReadings, Mixed, Variances
 from mffit.rig_errors import BY_NAME
 from mffit.scatter import rms
 from tir.frozen import ReadOnlyArrays
 
 NO_SCATTER = 0.005
 """Lower bound of the standard deviation among groups over the usual one: too small to show in the readings."""
-
-HELD = -60.0
-"""Logarithm of the variance of a held number."""
 
 UNKNOWN = 1e3
 """Standard deviation assumed for a number without prior, over its standard error from the readings alone."""
@@ -123,22 +120,18 @@ class JointFit(ReadOnlyArrays):
         found = minimize(loss, start, jac=True, method="L-BFGS-B", bounds=bounds)
         return Explained(-float(found.fun), Variances(common, 2.0 * found.x, 0.0))
 
-    def alike(self, held: Collection[str] = ()) -> Explained:
-        """The log marginal likelihood without random effects."""
-        given = self._alike(held)
-        return Explained(self.model.evidence(given).value, given)
-
-    def _alike(self, held: Collection[str] = ()) -> Variances:
+    def alike(self, held: Collection[str] = ()) -> Variances:
+        """The variances without random effects."""
         return Variances(self._held(held), np.full(self.model.own.shape[1], HELD), 0.0)
 
     def further(self, columns: np.ndarray) -> FurtherColumns:
         """The information of the readings about further columns (m, j), without random effects."""
-        return self.model.further(self._alike(), columns)
+        return self.model.further(self.alike(), columns)
 
     @property
     def misfit(self) -> float:
         """Sum of squared residuals at the posterior mean, in units of the readings' uncertainties, without random effects."""
-        left = self.model.residual - self.model.common @ self.model.posterior(self._alike()).mean
+        left = self.model.residual - self.model.common @ self.model.posterior(self.alike()).mean
         return float(left @ left)
 
     def _held(self, names: Collection[str]) -> np.ndarray:

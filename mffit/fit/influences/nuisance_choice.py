@@ -83,7 +83,7 @@ class NearSolution(NamedTuple):
     def left_out(self, group: np.ndarray) -> LeftOutGroups:
         """Each group (n,) of points predicted from all others, without random effects."""
         joint = self.joint(group)
-        return joint.left_out(joint.alike().given, group)
+        return joint.left_out(joint.alike(), group)
 
 
 def choose(config: Config, first: Fitted) -> NuisanceChoice:
@@ -158,7 +158,7 @@ def _judged(
     while enough and left:
         joint = model.joint(group, left)
         new = _numbers(left)
-        here = joint.left_out(joint.alike(new).given, group)
+        here = joint.left_out(joint.alike(new), group)
         gains, steps = dict[tuple[Nuisance, ...], float](), list(_steps(left, model.chosen))
         for step in steps:
             numbers, last = _numbers(step), step[-1]
@@ -167,7 +167,7 @@ def _judged(
             rivals = len(steps) if step[1:] else sum(other.after == last.after for other in left)
             gain = joint.gain(numbers, new)
             seen = beyond_chance(gain, len(numbers), rivals)
-            after = joint.left_out(joint.alike(new - numbers).given, group)
+            after = joint.left_out(joint.alike(new - numbers), group)
             verdicts[last.id] = Verdict(
                 last, False, _WORSE if seen else _WITHIN_CHANCE, here.gaps, after.gaps
             )
@@ -209,21 +209,21 @@ def _of_runs(
     joint = model.joint(sweeps)
     differ, alike = joint.explained(), joint.alike()
     halves = halves_of_runs(points)
-    without, beside = (joint.left_out(of.given, halves) for of in (alike, differ))
+    without, beside = (joint.left_out(of, halves) for of in (alike, differ.given))
     gaps, scatter = (
         (without.gaps, beside.gaps),
         dict(zip(nuisance.numbers, differ.scatter.tolist(), strict=True)),
     )
     if demanded:
         return Verdict(nuisance, True, _said(config, nuisance), *gaps), scatter
-    if not beyond_chance(differ.value - alike.value, len(scatter)):
+    if not beyond_chance(differ.value - joint.model.evidence(alike).value, len(scatter)):
         return Verdict(nuisance, False, _WITHIN_CHANCE, *gaps), {}
     # The gain must be significant over the runs: scatter shows in most runs, not in a few.
     of_run = np.unique(halves[joint.looked_at]) // 2
     if not clearly_above_zero(np.bincount(of_run, without.squares - beside.squares)):
         reason = "left-out halves of sweeps are not predicted clearly better with it"
         return Verdict(nuisance, False, reason, *gaps), {}
-    without, beside = (joint.left_out(of.given, sweeps) for of in (alike, differ))
+    without, beside = (joint.left_out(of, sweeps) for of in (alike, differ.given))
     if np.mean(np.log(beside.squares / without.squares)) > 0.0:  # the logarithm gives every run equal weight
         reason = "whole left-out sweeps are predicted worse with it, because the formula misses them"
         return Verdict(nuisance, False, reason, without.gaps, beside.gaps), {}

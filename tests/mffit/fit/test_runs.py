@@ -217,7 +217,9 @@ def test_the_spread_is_that_of_the_greatest_restricted_likelihood(runs_that_scat
     aim = best(slope, residual, covariance)
     assert found.explained().scatter == pytest.approx(np.exp(aim.x), rel=0.03, abs=0.02)
     gain = restricted(slope, residual, covariance(np.zeros(2)))[0] - aim.fun
-    assert 2.0 * (found.explained().value - found.alike().value) == pytest.approx(gain, rel=1e-3)
+    assert 2.0 * (found.explained().value - found.model.evidence(found.alike()).value) == pytest.approx(
+        gain, rel=1e-3
+    )
 
 
 def test_what_a_number_explains_is_weighed_with_the_scatter_of_the_runs(runs_that_scatter):
