@@ -190,26 +190,24 @@ class Noise(ReadOnlyArrays):
         """The noise with independent errors of the given size [N], [Nm] in some channels."""
         u, weight = self.u.copy(), np.ones(len(self.u)) if self.weight is None else self.weight.copy()
         scatter = dict(self.scatter)
-        for name, rows in self.by_channel(np.arange(len(u))).items():
-            if name in channels:
-                weight[rows] = 1.0
-                u[rows] = np.where(np.isfinite(self.stated[rows]), channels[name], np.inf)
-                scale = channels[name] / self.typically_stated(name)
-                scatter[name] = Scatter(scale=scale, without_noise=True)
+        for name, size in channels.items():
+            self.of_channel(weight, name)[:] = 1.0
+            self.of_channel(u, name)[:] = np.where(
+                np.isfinite(self.of_channel(self.stated, name)), size, np.inf
+            )
+            scatter[name] = Scatter(scale=size / self.typically_stated(name), without_noise=True)
         return replace(self, u=u, weight=weight, scatter=scatter)
 
     def at_least(self, misfit: np.ndarray) -> Noise:
         """The noise, enlarged in every channel to at least the rms of a misfit (c n,)."""
-        z = np.zeros(len(self.u))
-        z[self.used] = misfit[self.used] / self.u[self.used]
-        factors, scatter = [], dict(self.scatter)
-        for name, rows in self.by_channel(z).items():
-            known = np.isfinite(self.of_channel(self.u, name))
-            factor = max(1.0, np.nan_to_num(rms(rows[known]))) if known.any() else 1.0
-            factors.append(np.full(len(rows), factor))
-            here = scatter[name]
-            scatter[name] = replace(here, scale=factor * here.scale, growth=factor * here.growth)
-        return replace(self, u=self.u * np.concatenate(factors), scatter=scatter)
+        sizes = self.by_channel(np.where(np.isfinite(self.u), misfit / self.u, np.nan))
+        factor = {name: max(1.0, float(np.nan_to_num(rms(z)))) for name, z in sizes.items()}
+        scatter = {
+            name: replace(one, scale=factor[name] * one.scale, growth=factor[name] * one.growth)
+            for name, one in self.scatter.items()
+        }
+        wider = np.repeat([*factor.values()], len(self.u) // len(self.channels))
+        return replace(self, u=self.u * wider, scatter=scatter)
 
     def alone(self) -> Noise:
         """The scatter of the readings without shared changes."""

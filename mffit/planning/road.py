@@ -10,6 +10,7 @@ import numpy as np
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import FitResult
 from mffit.linearised import LinearisedChannel
+from mffit.linearised.gaussian import Directions, Informed
 from mffit.planning.runs import PlannedRun
 from mffit.points import Points
 from mffit.points.points import concatenate
@@ -39,14 +40,13 @@ class _ChannelOnRoad(ReadOnlyArrays):
         seen = np.hstack([functions, slopes]) @ self.root
         _, own = self.linear.foreseen(run, force)
         missed = np.sqrt(1.0 - likeness**2) * self.linear.components.missed
-        shared = np.column_stack([own, own_zeros, missed])
-        covariance = self.linear.noise**2 * np.eye(len(seen)) + shared @ shared.T
-        return np.asarray(seen.T @ np.linalg.solve(covariance, seen))
+        shared = Directions.of(np.column_stack([own, own_zeros, missed]) / self.linear.noise)
+        white = shared.less(seen / self.linear.noise)
+        return np.asarray(white.T @ white)
 
     def band(self, information: np.ndarray, held: Mapping[str, float]) -> float:
         """Rms half width of the 95 % band over the largest force; ``held`` multiplies the uncertainty of held numbers."""
-        root = np.linalg.cholesky(np.eye(len(information)) + information)
-        free = np.sum(np.linalg.solve(root, self.road.T) ** 2, axis=0)
+        free = np.sum((self.road @ Informed.by(information, np.zeros(len(information))).root) ** 2, axis=1)
         by_held = sum((held.get(name, 1.0) * force) ** 2 for name, force in self.held.items())
         return COVERAGE_FACTOR_95 * rms(np.sqrt(free + by_held + self.unlike)) / self.largest
 
