@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mffit.quantities import MODEL, QuantityName
+from mffit.quantities import MODEL
 from tir import Tyre
 from tir.codegen.program import INPUTS
 from tir.units import KINDS
@@ -32,16 +32,8 @@ class ViewerPanel:
     @property
     def word(self) -> str:
         """The heading."""
-        word = self.name or self.output.word
+        word = self.name or MODEL[self.y].word
         return word[0].upper() + word[1:]
-
-    @property
-    def output(self) -> QuantityName:
-        return MODEL[self.y]
-
-    @property
-    def input(self) -> QuantityName:
-        return MODEL[self.x]
 
 
 FAN = (-12.0, -8.0, -4.0, -2.0, 2.0, 4.0, 8.0, 12.0)

@@ -17,12 +17,14 @@ from mffit.errors import InputError
 from mffit.quantities import MODEL, QuantityName
 from mffit.templates import environment
 from mffit.viewer.bundle import script
-from mffit.viewer.controls import OUTPUTS, PANELS, in_si, settings
+from mffit.viewer.controls import FAN, OUTPUTS, PANELS, in_si, settings
 from mffit.viewer.named import Given, described, named
 from tir.codegen.javascript import javascript
 from tir.codegen.program import INPUTS, Switches, trace
 from tir.writing import replace_file
 
+Models = Mapping[str, Mapping[str, str]]
+"""Code by use and output, as :func:`code` gives it."""
 SEAL = re.compile(r"<!-- written by mffit show, sha256 of the rest ([0-9a-f]{64}) -->\n\Z")
 
 
@@ -69,34 +71,34 @@ def files_page(
     data = {
         "order": INPUTS,
         "controls": settings([*found.values()]),
-        "panels": [{"key": panel.key, **asdict(panel)} for panel in PANELS],
+        "panels": [{"key": panel.key, "word": panel.word, **asdict(panel)} for panel in PANELS],
         "quantities": {name: on_page(MODEL[name]) for name in (*INPUTS, *OUTPUTS)},
         "tyres": [described(name, tyre, names) for name, tyre in found.items()],
     }
-    filled = rendered(
-        "show",
-        data,
-        {mode: javascript(OUTPUTS, turn_slip=mode == "on") for mode in ("off", "on")},
-        title=", ".join(found),
-        names=list(found),
-        panels=PANELS,
-        quantities=MODEL,
-    )
+    fan = ", ".join(f"±{angle:g}" for angle in FAN if angle > 0.0)
+    models = code(OUTPUTS, Switches(False)) | code(OUTPUTS, Switches(True))
+    title, names = ", ".join(found), [*found]
+    filled = rendered("page", data, models, title=title, names=names, quantities=MODEL, fan=fan)
     return Page(filled, tuple(found))
 
 
+def code(outputs: Iterable[str], switches: Switches) -> dict[str, dict[str, str]]:
+    """JavaScript by use ("on" or "off" for turn slip) and output, each with code of its own: a curve pays for no other."""
+    on, star = switches.turn_slip, switches.star
+    return {"on" if on else "off": {name: javascript((name,), turn_slip=on, star=star) for name in outputs}}
+
+
 def rendered(
-    page: str, content: object, models: Mapping[str, str], *, title: str, module: str = "", **given: object
+    page: str, content: object, models: Models, *, title: str, module: str = "", **given: object
 ) -> str:
     """The template ``page`` with the script ``module`` (default: of that name), its content and code of models."""
     template = environment("mffit.viewer").get_template(f"{page}.html.j2")
-    code = script(module or page)
     return template.render(
-        {"window": None, **given},
+        {"window": None, "names": None, **given},
         content=content,
         models=models,
         title=title,
-        script=code,
+        script=script(module or page),
         version=mffit.__version__,
     )
 

@@ -17,9 +17,8 @@ from mffit.quantities import CHANNELS
 from mffit.results import BuildResult
 from mffit.rig import SIMULATED
 from mffit.viewer import constants
-from mffit.viewer.page import Page, on_page, rendered
+from mffit.viewer.page import Page, code, on_page, rendered
 from mffit.viewer.project_points import axis_quantities, columns, delivered, differing
-from tir.codegen.javascript import javascript
 from tir.codegen.program import INPUTS, LOADED, Switches, trace
 from tir.evaluate import CONICITY
 from tir.parameters import TABLE, Parameter
@@ -153,10 +152,13 @@ def project_html(
     ``window`` is the state of the local window, see :mod:`mffit.window`, ``here`` folder and endings of recordings that it
     takes; None for a page without a server.
     """
+    channels = [] if data is None else data["channels"]
+    assert isinstance(channels, list)
+    names = [str(channel["name"]) for channel in channels if isinstance(channel, dict)]
     return rendered(
-        "project",
+        "page",
         {"project": data, "window": window},
-        {one: javascript((one,), turn_slip=turn_slip, star=star) for one in _computed(data)},
+        code(names, Switches(turn_slip, star)),
         title=name,
         module="page" if window is None else "window",
         turn_slip=turn_slip,
@@ -171,13 +173,6 @@ def project_page(result: BuildResult, *, verdict: str = "", judgement: str = "")
     data = project_data(result, verdict=verdict, judgement=judgement)
     html = project_html(name, data, turn_slip=simulation.turn_slip, star=simulation.star)
     return Page(html, (name,))
-
-
-def _computed(data: dict[str, Json] | None) -> list[str]:
-    """The channels that a page with this data computes, each with code of its own, so that a picture pays for no other."""
-    channels = [] if data is None else data["channels"]
-    assert isinstance(channels, list)
-    return [str(channel["name"]) for channel in channels if isinstance(channel, dict)]
 
 
 def _misfits(result: BuildResult) -> dict[str, float]:

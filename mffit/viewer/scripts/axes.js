@@ -29,11 +29,10 @@ export function ticks(low, high, most) {
   const digits = Math.max(0, Math.min(8, places));
   return found.map(x => ({x, text: (Math.abs(x) < step / 2 ? 0 : x).toFixed(digits).replace("-", "−")}));
 }
-// Limits with some room on the sides that are not zero.
-export function roomy([low, high]) {
-  if (high - low < 1e-12) return [-1, 1];
-  const room = 0.04 * (high - low);
-  return [low < 0 ? low - room : low, high > 0 ? high + room : high];
+// Limits with some room.
+export function roomy(low, high) {
+  const room = high - low > 1e-12 ? 0.03 * (high - low) : 1;
+  return [low - room, high + room];
 }
 // The pen of a canvas that has the sharpness of screen or paper, cleared.
 export function penOf(canvas, width, height) {
@@ -46,18 +45,18 @@ export function penOf(canvas, width, height) {
   return {pen, ratio};
 }
 // Where the numbers of a box {x: [low, high], y: [low, high]} lie in a picture.
-export function placeOf(box, width, height, ratio, top = TOP) {
+export function placeOf(box, width, height, ratio) {
   const rows = ticks(...box.y, 6), start = 10 + LETTER * Math.max(...rows.map(tick => tick.text.length));
   const columns = ticks(...box.x, Math.max(3, Math.min(8, (width - start) / FOLD)));
-  const kx = (width - start - RIGHT) / (box.x[1] - box.x[0]), ky = (top + BOTTOM - height) / (box.y[1] - box.y[0]);
+  const kx = (width - start - RIGHT) / (box.x[1] - box.x[0]), ky = (TOP + BOTTOM - height) / (box.y[1] - box.y[0]);
   const ox = start - box.x[0] * kx, oy = height - BOTTOM - box.y[0] * ky;
   const X = x => ox + kx * x, Y = y => oy + ky * y;
-  return {box, start, top, width, height, ratio, rows, columns, kx, ky, ox, oy, X, Y};
+  return {box, start, width, height, ratio, rows, columns, kx, ky, ox, oy, X, Y};
 }
 // The part of the picture within its axes, and a little more.
-export function frameOf({start, top, width, height}) {
+export function frameOf({start, width, height}) {
   const frame = new Path2D();
-  frame.rect(start - EDGE, top - EDGE, width - start - RIGHT + 2 * EDGE, height - top - BOTTOM + 2 * EDGE);
+  frame.rect(start - EDGE, TOP - EDGE, width - start - RIGHT + 2 * EDGE, height - TOP - BOTTOM + 2 * EDGE);
   return frame;
 }
 export function straight(pen, x1, y1, x2, y2, colour, dash = []) {
@@ -72,7 +71,7 @@ export function straight(pen, x1, y1, x2, y2, colour, dash = []) {
 }
 // Grid, ticks and their numbers; `place.texts` has where those are: [left, top, right, bottom, text].
 export function axes(pen, place) {
-  const {X, Y, box, start, top, width, height, rows, columns} = place, end = width - RIGHT, floor = height - BOTTOM;
+  const {X, Y, box, start, width, height, rows, columns} = place, end = width - RIGHT, floor = height - BOTTOM;
   place.texts = [];
   const say = (text, x, y, align) => {
     const long = pen.measureText(text).width, left = align === "right" ? x - long : x - long / 2;
@@ -87,10 +86,10 @@ export function axes(pen, place) {
     say(tick.text, start - 5, Y(tick.x) + 4, "right");
   }
   for (const tick of columns) {
-    straight(pen, X(tick.x), top, X(tick.x), floor, theme.grid);
+    straight(pen, X(tick.x), TOP, X(tick.x), floor, theme.grid);
     say(tick.text, Math.min(X(tick.x), width - pen.measureText(tick.text).width / 2), height - 6, "center");
   }
-  if (box.x[0] <= 0 && box.x[1] >= 0) straight(pen, X(0), top, X(0), floor, theme.line);
+  if (box.x[0] <= 0 && box.x[1] >= 0) straight(pen, X(0), TOP, X(0), floor, theme.line);
   if (box.y[0] <= 0 && box.y[1] >= 0) straight(pen, start, Y(0), end, Y(0), theme.muted);
 }
 // A line through x0, y0, x1, y1, ... with gaps where a number is none.

@@ -1,14 +1,19 @@
 // The list of coefficients: fields and sliders that act at once, and buttons that write tyre.toml.
 import {byId, details, element, key, tell} from "./dom.js";
-import {RESIDUAL, coefficient, hooks, project, rows, state, trial} from "./model.js";
+import {coefficient, hooks, project, rows, setTrial, trial} from "./model.js";
+import {panels, remember, setDragging, update} from "./pictures.js";
+import {channelOf} from "./points.js";
 import {trimmed, written} from "./text.js";
 
+const RESTS_AFTER = 250;  // [ms]
+export const moves = [];  // what undo takes back
 export const cells = {};
+let dragFrom = null, resting = 0;
 let listed = null;  // the project whose coefficients are listed
 // Place of a coefficient: of the first shown channel that uses it, then of how many channels do; those of one channel
 // come first.
 function usedFirst() {
-  const shown = [...new Set(state.panels.map(panel => panel.y.replace(RESIDUAL, "")))]
+  const shown = [...new Set(panels.map(panel => channelOf(panel.y)))]
     .map(name => project.channels.find(one => one.name === name)).filter(Boolean);
   const place = name => {
     const first = shown.findIndex(one => one.uses.includes(name));
@@ -54,21 +59,21 @@ function coefficientRow(row) {
   field.setAttribute("aria-label", row.name);
   slider.setAttribute("aria-label", `${row.name}, slider`);
   const u = element("span", "u", row.stderr ? `± ${row.stderr.toPrecision(2)}` : ""), tag = element("span", "tag");
-  const reset = key("reset", "back to the fitted value", () => hooks.move(row.name, row.value, true));
+  const reset = key("reset", "back to the fitted value", () => move(row.name, row.value, true));
   keys.append(reset);
   const about = element("div", "about");
   line.append(element("span", "id", row.name), field, u, tag, keys);
   box.append(line, slider, about);
   box.title = `${row.about}${row.unit ? ` [${row.unit}]` : ""}`;
   field.addEventListener("change",
-    () => { if (Number.isFinite(field.valueAsNumber)) hooks.move(row.name, field.valueAsNumber, true); });
-  slider.addEventListener("input", () => hooks.move(row.name, slider.valueAsNumber, false));
-  slider.addEventListener("change", () => hooks.move(row.name, slider.valueAsNumber, true));
+    () => { if (Number.isFinite(field.valueAsNumber)) move(row.name, field.valueAsNumber, true); });
+  slider.addEventListener("input", () => move(row.name, slider.valueAsNumber, false));
+  slider.addEventListener("change", () => move(row.name, slider.valueAsNumber, true));
   slider.addEventListener("keydown", event => {
     const steps = {ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: 10, PageDown: -10}[event.key];
     if (!steps) return;
     event.preventDefault();
-    hooks.move(row.name, Math.min(Math.max(slider.valueAsNumber + steps * (row.slider[1] - row.slider[0]) / 200,
+    move(row.name, Math.min(Math.max(slider.valueAsNumber + steps * (row.slider[1] - row.slider[0]) / 200,
       row.slider[0]), row.slider[1]), true);
   });
   cells[row.name] = {box, field, slider, tag, reset, about, keys};
@@ -107,4 +112,41 @@ export function find() {
   if (wanted) for (const inner of byId("coefficients").querySelectorAll("details")) inner.open = true;
   for (const name in cells) cells[name].box.hidden = wanted !== "" && !name.includes(wanted) &&
     !coefficient[name].about.toUpperCase().includes(wanted);
+}
+
+// ---- moves
+export function move(name, value, final) {
+  if (dragFrom === null) dragFrom = {...trial};
+  if (value === coefficient[name].value) delete trial[name]; else trial[name] = value;
+  setDragging(!final);
+  clearTimeout(resting);
+  // all points follow a slider that is held still
+  if (!final) resting = setTimeout(() => { setDragging(false); update(); }, RESTS_AFTER);
+  if (final) {
+    moves.push({trial: dragFrom});
+    dragFrom = null;
+    remember();
+  }
+  showRow(coefficient[name]);
+  update();
+}
+// Values by name in place of those of the fit; others stay as fitted.
+export function tryOut(values) {
+  moves.push({trial: {...trial}});
+  setTrial(Object.fromEntries(Object.entries(project.values).filter(([name, x]) => name in values &&
+    values[name] !== x).map(([name]) => [name, values[name]])));
+  rows.forEach(showRow);
+  remember();
+  update();
+}
+// A change that is over, such as one of a file that another program has changed since, cannot be undone.
+export const dropMoves = are => { moves.splice(0, moves.length, ...moves.filter(one => !are(one))); };
+export function undo() {
+  const last = moves.pop();
+  if (!last || !last.trial) return hooks.undoEdit();
+  const names = new Set([...Object.keys(trial), ...Object.keys(last.trial)]);
+  setTrial(last.trial);
+  for (const name of names) if (name in coefficient) showRow(coefficient[name]);
+  remember();
+  update();
 }

@@ -1,5 +1,6 @@
-// The page of a project without a window.
+// The program of a page with curves: the data that the page carries decide what it shows.
 import {content} from "./content.js";
-import {begin} from "./project.js";
+import {showFiles} from "./files.js";
+import {beginProject} from "./project.js";
 
-begin(content.project);
+if (content.tyres) showFiles(); else beginProject(content.project);

@@ -15,6 +15,14 @@ export function symbol(quantity) {
   if (low) span.append(element("sub", "", low));
   return span;
 }
+export const named = ({word, unit}) => unit ? `${word} [${unit}]` : word;
+export const unitOf = ({unit}) => element("span", "unit", unit ? ` [${unit}]` : "");
+// Lines of texts and numbers as CSV; numbers with seven digits.
+export function csvText(lines) {
+  const textOf = cell => typeof cell === "number" ? String(Number(cell.toPrecision(7))) : String(cell);
+  const quoted = text => /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+  return lines.map(line => line.map(cell => quoted(textOf(cell))).join()).join("\n") + "\n";
+}
 // On a telephone a row is a paragraph, in which every number has the heading of its column.
 export function labelled(table) {
   const headings = [...table.querySelectorAll("thead th")].map(one => one.textContent.trim());

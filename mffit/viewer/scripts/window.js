@@ -1,13 +1,13 @@
 // A local window: every click is saved in tyre.toml, and Refit runs the real fit.
 import {ENDED, alive, asked, hasEnded, listen, sent, takesRecordings} from "./calls.js";
-import {cells, showRow} from "./coefficients.js";
+import {pointName, showChosen} from "./choice.js";
+import {cells, dropMoves, moves, showRow, tryOut} from "./coefficients.js";
 import {content} from "./content.js";
 import {byId, details, element, key} from "./dom.js";
 import {hooks, left, lineRanges, markLeftOut, project, rows, setTrial, trial} from "./model.js";
-import {chosen} from "./pictures.js";
-import {
-  begin, dropMoves, frame, moves, pointName, remember, showChosen, showProject, tryOut, update,
-} from "./project.js";
+import {frame, remember, update} from "./pictures.js";
+import {chosen} from "./points.js";
+import {beginProject, showProject} from "./project.js";
 
 let live = content.window, shownFit = content.project ? live.fits : -1, fetching = false,
   waiting = Promise.resolve();
@@ -278,4 +278,4 @@ byId("refit").addEventListener("click", () => post("run/fit"));
 byId("stop").addEventListener("click", () => post("stop"));
 listen(state => state ? setLive(state) : showStatus());
 showStatus();
-begin(content.project);
+beginProject(content.project);

@@ -58,7 +58,7 @@ class Engine:
         self.context = pytest.importorskip("quickjs").Context()
         html = project_html("small", data, turn_slip=data["turn_slip"], star=data["star"])
         models = html[html.index("const MODELS") : html.index("(() => {")]
-        self.context.eval(models + script("model"))
+        self.context.eval(models + script("curves"))
         content = list(zlib.decompress(base64.b64decode(data["points"]["bytes"])))
         self(f"take({json.dumps(data)}, Uint8Array.from({content}))")
         self("filter()")
@@ -200,7 +200,7 @@ def test_a_point_lies_as_far_from_its_curve_as_the_model_misses_it(engine, resul
     """Brought to the conditions of the curve, the medians of its points; along the sideslip where both axes are forces."""
     shown = np.array(engine.panel(x, y)["py"], dtype=float)
     curved = engine(
-        f"groupsOver('alpha').flatMap(group => {{ const model = along(models, group, '{y}');"
+        f"groupsOver('alpha').flatMap(group => {{ const model = alongGroup(models, group, '{y}');"
         " return [...group.members].map(i => [i, model(columns.alpha[i])]); })"
     )
     curved = [(i, on) for i, on in curved if i < len(result.points)]
@@ -296,11 +296,11 @@ def test_bands_are_those_of_the_prediction(engine, result):
     half = COVERAGE_FACTOR_95 * np.sqrt(known.of_run)
     compared = 0
     for k, curve in enumerate(curves):
-        members = np.array([i for i in curve["group"]["members"] if i < len(felt)])
+        members = np.array([i for i in curve["path"]["members"] if i < len(felt)])
         for x, low, middle, high in engine(f"bandOf(panel.kept.curves[{k}])"):
             assert middle == pytest.approx((high + low) / 2.0)
             near = members[np.abs(np.degrees(felt.alpha[members]) - x) < 1.5]
-            on = engine(f"along(fitModels, groupsOver('alpha')[{k}], 'Fy')({np.radians(x)})")
+            on = engine(f"alongGroup(fitModels, groupsOver('alpha')[{k}], 'Fy')({np.radians(x)})")
             if len(near) != 1:
                 continue
             assert (high - low) / 2.0 == pytest.approx(half[near[0]], rel=1e-3)
@@ -323,7 +323,7 @@ def test_a_picture_is_saved_as_its_numbers(engine, result):
     for row in table:
         if row["what"] == "point":
             assert float(row["Fy"]) == pytest.approx(wanted[row["file"], int(row["line"])], rel=1e-5)
-    Fz, _, gamma, _, _, Vx, p = shown["curves"][0]["group"]["fixed"]
+    Fz, _, gamma, _, _, Vx, p = shown["curves"][0]["path"]["fixed"]
     first = [row for row in table if row["what"] == "curve"][: shown["curves"][0]["steps"] + 1]
     alpha = np.radians([float(row["alpha"]) for row in first])
     tyre = result.fit.tyre(Fz, alpha, gamma, Vx=Vx, p=p, turn_slip=result.fit.simulation.turn_slip)
