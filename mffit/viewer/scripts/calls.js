@@ -1,5 +1,5 @@
 // What the pages of a local window share: questions to its server, and recordings that are dropped or chosen.
-import {byId} from "./dom.js";
+import {byId, element} from "./dom.js";
 
 const PATIENCE = 3000;
 export const ENDED = "The server of this window has ended. Everything that you saved is in tyre.toml; " +
@@ -81,8 +81,7 @@ export function takesRecordings(say, stored) {
     const what = `${these(taken.length, "recording")} (${size < 0.1 ? "less than 0.1" : size.toFixed(1)} MB)`;
     const rest = others ? ` ${others} other ${others === 1 ? "file is" : "files are"} not a recording.` : "";
     byId("store-about").textContent = `Store ${what} in the folder ${folder}?${rest}`;
-    byId("store-files").replaceChildren(
-      ...taken.map(file => Object.assign(document.createElement("li"), {textContent: file.name})));
+    byId("store-files").replaceChildren(...taken.map(file => element("li", "", file.name)));
     dialog.returnValue = "";
     dialog.onclose = () => { if (dialog.returnValue === "yes") store(taken); };
     dialog.showModal();

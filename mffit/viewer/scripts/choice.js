@@ -1,9 +1,7 @@
 // Points that are pointed at and chosen, in a picture or by keys, and the list of what was read at them.
 import {RESIDUAL, inOrder, within} from "./curves.js";
-import {byId, element, key, rowOf, showTip} from "./dom.js";
-import {
-  axisKnown, channels, columns, hooks, left, own, project, shownIn, whyLeftOut,
-} from "./model.js";
+import {byId, element, key, showTip} from "./dom.js";
+import {axisKnown, channels, columns, hooks, left, own, project, shownIn, whyLeftOut} from "./model.js";
 import {tool, update} from "./pictures.js";
 import {MOST_LISTED, chosen, isChosen, label, nearest, pointed, setChosen, setPointed} from "./points.js";
 import {labelled, trimmed, written} from "./text.js";
@@ -38,8 +36,8 @@ export function showChosen() {
   byId("chosen-title").textContent = chosen.length === 1 ? pointName(chosen[0]) : chosen.length
     ? `${chosen.length} points` : "";
   if (!chosen.length) return;
-  const shown = chosen.slice(0, MOST_LISTED), body = byId("chosen-table").tBodies[0],
-    head = byId("chosen-table").tHead;
+  const shown = chosen.slice(0, MOST_LISTED), body = byId("chosen-table").tBodies[0];
+  const row = cells => element("tr", "", cells), cell = text => element("td", "n", text);
   const named = Object.keys(project.quantities).filter(name => columns[name] &&
     shown.some(i => Number.isFinite(columns[name][i]) && columns[name][i] !== 0));
   const about = [
@@ -48,28 +46,21 @@ export function showChosen() {
       [`${label(name)}, as read`, i => trimmed(written(shownIn(name, (columns.read[name] || columns[name])[i])))]),
     ...(shown.some(i => left[i]) ? [["left out", i => left[i] ? whyLeftOut(i) || "yes" : ""]] : []),
   ];
-  head.replaceChildren();
+  byId("chosen-table").tHead.replaceChildren(...chosen.length === 1 ? [] : [row([element("th", "", "point"),
+    ...about.map(([title]) => element("th", "n", title)), element("th")])]);
   if (chosen.length === 1) {
-    body.replaceChildren(
-      ...about.map(([title, text]) => rowOf(element("th", "", title), element("td", "n", text(chosen[0])))));
+    body.replaceChildren(...about.map(([title, text]) => row([element("th", "", title), cell(text(chosen[0]))])));
   } else {
-    head.append(rowOf(element("th", "", "point"), ...about.map(([title]) => element("th", "n", title)),
-      element("th", "")));
-    body.replaceChildren(...shown.map(i =>
-      rowOf(element("td", "", pointName(i)), ...about.map(([, text]) => element("td", "n", text(i))), unchoose(i))));
-    if (shown.length < chosen.length) body.append(
-      rowOf(element("td", "", `and ${chosen.length - shown.length} more`)));
+    body.replaceChildren(...shown.map(i => row([element("td", "", pointName(i)), ...about.map(([, text]) =>
+      cell(text(i))), cell([unchoose(i)])])));
+    if (shown.length < chosen.length) body.append(row([cell(`and ${chosen.length - shown.length} more`)]));
   }
   labelled(byId("chosen-table"));
   byId("chosen-actions").replaceChildren(...hooks.chosenActions(),
     key("Choose none", "ends the choice (Esc in a picture)", () => choose(-1, false)));
 }
-function unchoose(i) {
-  const cell = element("td", "n"), button = key("×", "take this point out of the choice", () => choose(i, true));
-  button.setAttribute("aria-label", `take ${pointName(i)} out of the choice`);
-  cell.append(button);
-  return cell;
-}
+const unchoose = i => Object.assign(key("×", "take this point out of the choice", () => choose(i, true)),
+  {ariaLabel: `take ${pointName(i)} out of the choice`});
 function step(panel, by, add) {
   const order = inOrder(panel.kept);
   if (!order.length) return;

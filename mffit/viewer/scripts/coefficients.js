@@ -1,5 +1,5 @@
 // The list of coefficients: fields and sliders that act at once, and buttons that write tyre.toml.
-import {byId, details, element, key, tell} from "./dom.js";
+import {byId, details, element, key, numberField, tell} from "./dom.js";
 import {coefficient, hooks, project, rows, setTrial, trial} from "./model.js";
 import {panels, remember, setDragging, update} from "./pictures.js";
 import {channelOf} from "./points.js";
@@ -51,31 +51,24 @@ export function listCoefficients() {
   find();
 }
 function coefficientRow(row) {
-  const box = element("div", "coefficient"), line = element("div", "line"), keys = element("span", "keys");
+  const [low, high] = row.slider, to = (value, final = true) => move(row.name, value, final);
+  const field = numberField({ariaLabel: row.name,
+    onchange: () => { if (Number.isFinite(field.valueAsNumber)) to(field.valueAsNumber); }});
+  const slider = element("input", "slider", "", {type: "range", min: low, max: high, step: "any",
+    ariaLabel: `${row.name}, slider`, oninput: () => to(slider.valueAsNumber, false),
+    onchange: () => to(slider.valueAsNumber), onkeydown: event => {
+      const steps = {ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: 10, PageDown: -10}[event.key];
+      if (!steps) return;
+      event.preventDefault();
+      to(Math.min(Math.max(slider.valueAsNumber + steps * (high - low) / 200, low), high));
+    }});
+  const reset = key("reset", "back to the fitted value", () => to(row.value)), keys = element("span", "keys", [reset]),
+    tag = element("span", "tag"), about = element("div", "about"),
+    u = element("span", "u", row.stderr ? `± ${row.stderr.toPrecision(2)}` : "");
+  const line = element("div", "line", [element("span", "id", row.name), field, u, tag, keys]);
+  const box = element("div", "coefficient", [line, slider, about],
+    {title: `${row.about}${row.unit ? ` [${row.unit}]` : ""}`});
   box.dataset.name = row.name;
-  const field = Object.assign(element("input", "number"), {type: "number", step: "any"});
-  const slider = Object.assign(element("input", "slider"),
-    {type: "range", min: row.slider[0], max: row.slider[1], step: "any"});
-  field.setAttribute("aria-label", row.name);
-  slider.setAttribute("aria-label", `${row.name}, slider`);
-  const u = element("span", "u", row.stderr ? `± ${row.stderr.toPrecision(2)}` : ""), tag = element("span", "tag");
-  const reset = key("reset", "back to the fitted value", () => move(row.name, row.value, true));
-  keys.append(reset);
-  const about = element("div", "about");
-  line.append(element("span", "id", row.name), field, u, tag, keys);
-  box.append(line, slider, about);
-  box.title = `${row.about}${row.unit ? ` [${row.unit}]` : ""}`;
-  field.addEventListener("change",
-    () => { if (Number.isFinite(field.valueAsNumber)) move(row.name, field.valueAsNumber, true); });
-  slider.addEventListener("input", () => move(row.name, slider.valueAsNumber, false));
-  slider.addEventListener("change", () => move(row.name, slider.valueAsNumber, true));
-  slider.addEventListener("keydown", event => {
-    const steps = {ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: 10, PageDown: -10}[event.key];
-    if (!steps) return;
-    event.preventDefault();
-    move(row.name, Math.min(Math.max(slider.valueAsNumber + steps * (row.slider[1] - row.slider[0]) / 200,
-      row.slider[0]), row.slider[1]), true);
-  });
   cells[row.name] = {box, field, slider, tag, reset, about, keys};
   hooks.extendRow(row, keys, box);
   showRow(row);

@@ -124,16 +124,16 @@ const filesPart = {
       `${content.quantities[name].word} ${withUnit(name, inUnit(name, now[name]))}`).join(", ") + minus;
   },
   recolour() {},
-  frame(panel, figure, caption) {
-    const x = content.quantities[panel.x], y = content.quantities[panel.y], across = element("p", "x", `${x.word} `);
+  frame(panel, figure, caption, keys) {
+    const x = content.quantities[panel.x], y = content.quantities[panel.y], letter = symbol(y),
+      minus = panel.sign < 0 ? "−" : "";
+    letter.prepend(minus);
     figure.id = panel.key;
-    const letter = symbol(y);
-    if (panel.sign < 0) letter.prepend("−");
-    caption.append(element("strong", "", panel.word), letter, unitOf(y), element("span", "idle", "needs turn slip"));
-    across.append(symbol(x), unitOf(x));
-    figure.append(across);
+    caption.append(element("strong", "", panel.word), letter, unitOf(y), element("span", "idle", "needs turn slip"),
+      ...keys);
+    figure.append(element("p", "x", [`${x.word} `, symbol(x), unitOf(x)]));
     panel.canvas.ariaLabel = `${panel.word} over ${x.word}; the arrow keys move its slider, + and - zoom, 0 shows all`;
-    panel.words = {x: named(x), y: named({...y, word: panel.word})};
+    panel.words = {x: named(x), y: minus + named(y)};
   },
   hover(panel, at) {
     const found = at && nearestOf(panel, at), name = panel.runs;
@@ -188,19 +188,19 @@ function nearestOf({place: {X, Y}, lines, sweep}, [x, y]) {
 }
 
 // ---- the table of tyres
-function addRow(tyre) {
-  const line = byId("legend").tBodies[0].insertRow(), label = element("label"), swatch = element("span", "swatch");
-  tyre.box = element("input", "", "", {type: "checkbox"});
-  tyre.about = element("span", "about");
+function rowOf(tyre) {
+  const swatch = element("span", "swatch"), box = element("input", "", "", {type: "checkbox",
+    onchange: () => { tyre.show(box.checked); settle(); }});
   swatch.style.background = `var(--c${tyre.number})`;
-  label.append(tyre.box, swatch, element("span", "name", tyre.name));
-  line.insertCell().append(label, tyre.about);
-  tyre.cells = COLUMNS.map(() => Object.assign(line.insertCell(), {className: "n"}));
+  tyre.about = element("span", "about");
+  tyre.cells = COLUMNS.map(() => element("td", "n"));
+  const row = element("tr", "", [element("td", "", [element("label", "", [box, swatch,
+    element("span", "name", tyre.name)]), tyre.about]), ...tyre.cells]);
   tyre.show = isShown => {
-    tyre.shown = tyre.box.checked = isShown;
-    line.classList.toggle("hidden", !isShown);
+    tyre.shown = box.checked = isShown;
+    row.classList.toggle("hidden", !isShown);
   };
-  tyre.box.addEventListener("change", () => { tyre.show(tyre.box.checked); settle(); });
+  return row;
 }
 function fillRow(tyre) {
   const inputs = content.order.map(name => now[name]), models = modelsOf(tyre);
@@ -252,7 +252,7 @@ export function showFiles() {
   tyres = content.tyres.map((tyre, i, all) => ({...tyre, number: i % 8,
     wide: 2 + 1.6 * (all.length - 1 - i) / Math.max(all.length - 1, 1),  // wider below, so that all remain visible
     off: compiled("off", tyre.values), on: compiled("on", tyre.values)}));
-  tyres.forEach(addRow);
+  byId("legend").tBodies[0].append(...tyres.map(rowOf));
   labelled(byId("legend"));
   window.mffit = filesApi;
   begin(filesPart);

@@ -1,5 +1,5 @@
 // Filters of the points: a button for each group, which is the key of the colours too, and ranges.
-import {byId, element, key} from "./dom.js";
+import {byId, element, key, numberField} from "./dom.js";
 import {axisKnown, columns, facet, filter, project, quantity, state, visible} from "./model.js";
 import {remember, update} from "./pictures.js";
 import {palette} from "./points.js";
@@ -10,34 +10,22 @@ export function listFacets() {
   const wide = project.points.facets.filter(one => one.as_range).map(one => one.name);
   for (const name of wide) delete state.hidden[name];
   for (const one of project.points.facets.filter(facet => facet.labels.length > 1 && !facet.as_range)) {
-    const home = byId(one.name === state.colour ? "legend" : "facets"),
-      present = one.labels.filter((_, k) => one.of.includes(k));
+    const present = one.labels.filter((_, k) => one.of.includes(k));
     if (present.length < 2) continue;
-    const line = element("div", "facet");
-    line.append(element("span", "word", one.word));
-    const all = key("all", "show all", () => { delete state.hidden[one.name]; refilter(); });
-    all.classList.add("chip");
-    line.append(all);
-    for (const text of present) line.append(chip(one, text));
-    home.append(line);
+    const all = key("all", "show all", () => { delete state.hidden[one.name]; refilter(); }, "small chip");
+    byId(one.name === state.colour ? "legend" : "facets").append(element("div", "facet",
+      [element("span", "word", one.word), all, ...present.map(text => chip(one, text))]));
   }
-  for (const name of [...wide, "T", "t"]) {
-    if (!axisKnown(name)) continue;
-    const line = element("div", "facet range"), ends = [0, 1].map(k => {
-      const field = Object.assign(element("input", "number"), {type: "number", step: "any"});
-      field.setAttribute("aria-label", `${quantity(name).word} ${k ? "to" : "from"}`);
-      field.value = (state.ranges[name] || [null, null])[k] ?? "";
-      field.addEventListener("change", () => {
-        const range = state.ranges[name] || [null, null];
-        range[k] = Number.isFinite(field.valueAsNumber) ? field.valueAsNumber : null;
-        state.ranges[name] = range;
+  for (const name of [...wide, "T", "t"].filter(axisKnown)) {
+    const {word, unit} = quantity(name), [from, to] = [0, 1].map(k => numberField({
+      ariaLabel: `${word} ${k ? "to" : "from"}`, value: state.ranges[name]?.[k] ?? "",
+      onchange: ({target: {valueAsNumber: x}}) => {
+        (state.ranges[name] ??= [null, null])[k] = Number.isFinite(x) ? x : null;
         refilter();
-      });
-      return field;
-    });
-    line.append(element("span", "word", quantity(name).word), "from ", ends[0], " to ", ends[1],
-      ` ${quantity(name).unit}`);
-    byId("facets").append(line);
+      },
+    }));
+    byId("facets").append(element("div", "facet range",
+      [element("span", "word", word), "from ", from, " to ", to, ` ${unit}`]));
   }
 }
 // A click hides the group; with Shift, or twice, it shows it alone.
@@ -49,9 +37,8 @@ function chip(one, text) {
     if (hidden.has(text)) hidden.delete(text); else hidden.add(text);
     state.hidden[one.name] = [...hidden];
     refilter();
-  });
-  made.addEventListener("dblclick", alone);
-  made.classList.add("chip");
+  }, "small chip");
+  made.ondblclick = alone;
   made.dataset.facet = one.name;
   made.dataset.label = text;
   return made;
@@ -67,11 +54,9 @@ export function showFacets() {
     const {facet: name, label: text} = made.dataset;
     made.setAttribute("aria-pressed", !(state.hidden[name] || []).includes(text));
     made.textContent = text;
-    if (name === state.colour) {
-      const mark = document.createElement("i");
-      mark.style.background = palette[facet(name).labels.indexOf(text)];
-      made.prepend(mark);
-    }
+    if (name !== state.colour) continue;
+    made.prepend(element("i"));
+    made.firstChild.style.background = palette[facet(name).labels.indexOf(text)];
   }
   const count = visible.reduce((sum, one) => sum + one, 0);
   byId("shown").textContent = `${count} of ${columns.count}`;

@@ -153,47 +153,29 @@ const rangesOf = entry => entry.lines.split(",").map(part => {
   const [first, last] = part.split("-").map(Number);
   return [first, last ?? first];
 });
-// Ranges in order, of which those that touch are one.
-function joined(ranges) {
-  const found = [];
-  for (const [first, last] of ranges) {
-    const before = found.at(-1);
-    if (before && first <= before[1] + 1) before[1] = Math.max(before[1], last); else found.push([first, last]);
-  }
-  return found;
-}
-// Whether one of the ranges, in order and apart, holds a line; by halving, as there may be tens of thousands.
-function holds(ranges, line) {
-  let from = 0, to = ranges.length;
-  while (from < to) {
-    const middle = (from + to) >> 1;
-    if (ranges[middle][1] < line) from = middle + 1; else to = middle;
-  }
-  return from < ranges.length && ranges[from][0] <= line;
-}
 export function markLeftOut(entries) {
-  const {line, file} = columns, lists = project.points.files.map(() => []);
-  left = new Uint8Array(columns.count);
+  const {line, file} = columns, end = line.reduce((most, one) => Math.max(most, one), 0) + 1, marked = {};
   for (const entry of entries) {
-    const list = lists[project.points.files.indexOf(entry.file)];
-    if (list) for (const range of rangesOf(entry)) list.push(range);
+    const lines = marked[project.points.files.indexOf(entry.file)] ??= new Uint8Array(end);
+    for (const [first, last] of rangesOf(entry)) lines.fill(1, first, last + 1);
   }
-  const ranges = lists.map(list => joined(list.sort(([a], [b]) => a - b)));
-  for (let i = 0; i < columns.count; i++) if (holds(ranges[file[i]], line[i])) left[i] = 1;
+  left = new Uint8Array(columns.count);
+  for (let i = 0; i < columns.count; i++) left[i] = marked[file[i]]?.[line[i]] ?? 0;
   misfits = {};
   fitMisfits = {};
   version++;
 }
 // Lines of points as [{file, lines}], in the notation of tyre.toml; ranges that touch are one.
 export function lineRanges(members) {
-  const {file, line, last} = columns, found = new Map();
+  const {file, line, last} = columns, found = {};
   for (const i of Int32Array.from(members).sort((a, b) => file[a] - file[b] || line[a] - line[b])) {
-    const name = project.points.files[file[i]];
-    if (!found.has(name)) found.set(name, []);
-    found.get(name).push([line[i], last[i]]);
+    const ranges = found[file[i]] ??= [], before = ranges.at(-1);
+    if (before && line[i] <= before[1] + 1) before[1] = Math.max(before[1], last[i]);
+    else ranges.push([line[i], last[i]]);
   }
   const text = ([from, to]) => from === to ? `${from}` : `${from}-${to}`;
-  return [...found].map(([name, ranges]) => ({file: name, lines: joined(ranges).map(text).join(", ")}));
+  return Object.entries(found).map(([k, ranges]) =>
+    ({file: project.points.files[k], lines: ranges.map(text).join(", ")}));
 }
 export function whyLeftOut(i) {
   const file = project.points.files[columns.file[i]], line = columns.line[i];

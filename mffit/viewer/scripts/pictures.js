@@ -1,13 +1,13 @@
 // The pictures of a page: their frames, what pointer, fingers and keys do in them, zoom, and pictures as files. What
 // they show comes from the part of the page that began, that of files or that of a project. It has
-//   frame(panel, figure, caption)  fills the frame of a new picture and sets panel.words, the texts of its axes
+//   frame(panel, figure, caption, keys)  fills the frame of a new picture; sets panel.words, the texts of its axes
 //   compute(), told(), recolour()  before and after pictures are drawn, and after a change of the colours
 //   scene(panel)  {name, box}: the name of what `still` draws, and the box of the axes
 //   still, moving, above(pen, panel, place)  draw: kept while the name stays; anew each time; not cut at the axes
 //   hover(panel, at), click(panel, at, event), choose(panel, box, event), key(panel, event)  `at` is null outside
 //   kept(), csv(panel)  what the address keeps, and the numbers of a picture
 import {RIGHT, axes, frameOf, onThemeChange, penOf, placeOf, readTheme, theme, whenPrinted} from "./axes.js";
-import {byId, element, key} from "./dom.js";
+import {byId, canvasOf, element, key} from "./dom.js";
 
 const ZOOM = 1.25, NEAREST_DRAG = 6, GROWTH = 0.2;
 export const panels = [];
@@ -68,8 +68,7 @@ function paint(panel, pen, width, height, ratio) {
   const scene = part.scene(panel), box = limits(panel, scene.box);
   const name = [width, height, ratio, ...box.x, ...box.y, theme.ink, scene.name].join();
   if (!panel.layer || panel.layer.name !== name) {
-    const layer = Object.assign(document.createElement("canvas"),
-      {width: Math.round(width * ratio), height: Math.round(height * ratio)});
+    const layer = canvasOf(Math.round(width * ratio), Math.round(height * ratio));
     const on = layer.getContext("2d"), place = placeOf(box, width, height, ratio);
     on.setTransform(ratio, 0, 0, ratio, 0, 0);
     axes(on, place);
@@ -107,22 +106,18 @@ const seen = new IntersectionObserver(entries => {
 
 // ---- a picture
 export function addPanel(given) {
-  const figure = element("figure", "panel"), caption = element("figcaption"), plot = element("div", "plot");
-  const panel = {...given, canvas: document.createElement("canvas"), tip: element("div", "tip", "", {hidden: true})};
-  const more = element("details", "more"), menu = element("div");
-  more.append(element("summary", "", "⋯", {ariaLabel: "save this picture"}), menu);
-  for (const [word, save] of [["picture (PNG)", savePicture],
-    ["numbers (CSV)", () => saved(panel, "csv", new Blob([part.csv(panel)], {type: "text/csv"}))]]) {
-    menu.append(key(word, `save this ${word}`, () => { more.open = false; save(panel); }));
-  }
+  const panel = {...given, canvas: element("canvas", "", "", {tabIndex: 0, role: "img"}),
+    tip: element("div", "tip", "", {hidden: true})};
   panel.whole = key("whole", "shows all again (0, or a double click)", () => look(panel, null));
   panel.whole.hidden = true;
-  panel.canvas.tabIndex = 0;
-  panel.canvas.setAttribute("role", "img");
-  plot.append(panel.canvas, panel.tip);
-  figure.append(caption, plot);
-  part.frame(panel, figure, caption);
-  caption.append(panel.whole, more);
+  const saves = [["picture (PNG)", savePicture],
+    ["numbers (CSV)", () => saved(panel, "csv", new Blob([part.csv(panel)], {type: "text/csv"}))]];
+  const more = element("details", "more", [element("summary", "", "⋯", {ariaLabel: "save this picture"}),
+    element("div", "", saves.map(([word, save]) =>
+      key(word, `save this ${word}`, () => { more.open = false; save(panel); })))]);
+  const caption = element("figcaption"), plot = element("div", "plot", [panel.canvas, panel.tip]);
+  const figure = element("figure", "panel", [caption, plot]);
+  part.frame(panel, figure, caption, [panel.whole, more]);
   byId("panels").append(figure);
   gestures(panel, plot);
   seen.observe(panel.canvas);
@@ -227,18 +222,15 @@ export function look(panel, view) {
   update();
 }
 function saved(panel, ending, content) {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(content);
-  link.download = `${document.title} ${panel.y} over ${panel.x}`.replace(/[^\w.-]+/g, "_") + `.${ending}`;
+  const name = `${document.title} ${panel.y} over ${panel.x}`.replace(/[^\w.-]+/g, "_");
+  const link = element("a", "", "", {href: URL.createObjectURL(content), download: `${name}.${ending}`});
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 function savePicture(panel) {
   const scale = 2, head = 26, foot = 18, {clientWidth: width, clientHeight: height} = panel.canvas;
-  const canvas = Object.assign(document.createElement("canvas"),
-    {width: scale * width, height: scale * (height + head + foot)}), pen = canvas.getContext("2d");
-  const inner = Object.assign(document.createElement("canvas"), {width: scale * width, height: scale * height}),
-    on = inner.getContext("2d");
+  const canvas = canvasOf(scale * width, scale * (height + head + foot)), pen = canvas.getContext("2d");
+  const inner = canvasOf(scale * width, scale * height), on = inner.getContext("2d");
   on.setTransform(scale, 0, 0, scale, 0, 0);
   paint(panel, on, width, height, scale);
   pen.fillStyle = theme.paper;

@@ -2,6 +2,7 @@
 // picture has up to a million of them.
 import {BOTTOM, LETTER, RIGHT, TOP, over, ring, roomy, stroke, theme} from "./axes.js";
 import {RESIDUAL, bandOf, crosses, extent, fixedCurve, placed, pointsOf} from "./curves.js";
+import {canvasOf} from "./dom.js";
 import {
   MOST_MOVED, beforeModels, changed, channels, columns, facet, fitModels, isMoved, left, misfit, misfits, models,
   project, quantity, state, version, visible,
@@ -15,7 +16,7 @@ export const MOST_LISTED = 300;
 const LABELS_AT = [1, 0.92, 0.08, 0, 0.8, 0.2, 0.7, 0.3, 0.6, 0.4];
 export let palette = [], chosen = [], isChosen = new Uint8Array(0), pointed = -1;
 let inks = [];
-const scratch = document.createElement("canvas");
+const scratch = canvasOf(1, 1);
 
 export function setChosen(members) {
   if (Math.max(chosen.length, members.length) > MOST_LISTED) changed();  // inked among the points
@@ -33,8 +34,7 @@ export function recolour() {
 }
 // Colours on the paper as pixels.
 function pixelsOf(colours) {
-  const canvas = Object.assign(document.createElement("canvas"), {width: colours.length, height: 1}),
-    pen = canvas.getContext("2d");
+  const pen = canvasOf(colours.length, 1).getContext("2d");
   pen.fillStyle = theme.paper;
   pen.fillRect(0, 0, colours.length, 1);
   colours.forEach(([colour, alpha], i) => {
@@ -143,23 +143,17 @@ function dots(on, panel, shown, {start, width, height, ratio, kx, ky, ox, oy}) {
   on.stroke();
 }
 // Where a further run is expected, 95 %, and its middle: the fit with its model error.
-function band(pen, curve, {X, Y}) {
+function band(pen, curve, place) {
   const points = bandOf(curve), colour = colourOf(curve);
   if (points.length < 2) return;
   pen.globalAlpha = .13;
   pen.fillStyle = colour;
   pen.beginPath();
-  for (const [x, low] of points) pen.lineTo(X(x), Y(low));
-  for (const [x, , , high] of [...points].reverse()) pen.lineTo(X(x), Y(high));
+  for (const [x, low] of points) pen.lineTo(place.X(x), place.Y(low));
+  for (const [x, , , high] of [...points].reverse()) pen.lineTo(place.X(x), place.Y(high));
   pen.fill();
   pen.globalAlpha = .8;
-  pen.lineWidth = 1;
-  pen.strokeStyle = colour;
-  pen.setLineDash([2, 2]);
-  pen.beginPath();
-  for (const [x, , middle] of points) pen.lineTo(X(x), Y(middle));
-  pen.stroke();
-  pen.setLineDash([]);
+  stroke(pen, points.flatMap(([x, , middle]) => [x, middle]), place, colour, 1, [2, 2]);
   pen.globalAlpha = 1;
 }
 // By level of the colour, the curve of most points: it has a band and a label.

@@ -51,31 +51,31 @@ const projectPart = {
     recolour();
     showFacets();
   },
-  frame(panel, figure, caption) {
+  frame(panel, figure, caption, keys) {
     const title = element("strong", "printed"), known = Object.keys(project.quantities).filter(axisKnown);
     const options = {y: [...known, ...channels.map(name => RESIDUAL + name)], x: known};
     const tellAxes = () => {
       panel.words = {x: label(panel.x), y: label(panel.y)};
       title.textContent = `${panel.words.y} over ${panel.words.x}`;
     };
-    for (const axis of ["y", "x"]) {
-      const list = element("select", "", "", {ariaLabel: axis === "y" ? "Upwards" : "Sideways"});
-      for (const name of options[axis]) list.append(new Option(label(name), name, false, name === panel[axis]));
+    const [upwards, sideways] = ["y", "x"].map(axis => {
+      const list = element("select", "", options[axis].map(name => new Option(label(name), name)),
+        {ariaLabel: axis === "y" ? "Upwards" : "Sideways", value: panel[axis]});
+      if (!list.value) list.selectedIndex = 0;
       panel[axis] = list.value;
-      list.addEventListener("change", () => {
+      list.onchange = () => {
         panel[axis] = list.value;
         panel.box = null;
         tellAxes();
         look(panel, null);
         remember();
         listCoefficients();
-      });
-      caption.append(...(axis === "x" ? [element("span", "on-screen", "over "), list] : [list]));
-    }
+      };
+      return list;
+    });
     tellAxes();
-    const close = key("×", "remove this picture", () => { removePanel(panel); remember(); listCoefficients(); });
-    close.classList.add("close");
-    caption.append(close, title);
+    caption.append(upwards, element("span", "on-screen", "over "), sideways, ...keys, key("×", "remove this picture",
+      () => { removePanel(panel); remember(); listCoefficients(); }, "small close"), title);
     panel.canvas.ariaLabel =
       "points and curves; arrow keys choose a point, with Shift several, Ctrl+A all; + and - zoom, 0 shows all";
   },

@@ -8,16 +8,13 @@ const say = (sentence, bad = false) => {
   byId("status").classList.toggle("bad", bad);
 };
 function field(home, word, name, given) {
-  const label = element("label", "", word), input = element("input", "", "", {name, ...given});
-  label.append(input);
-  home.append(label);
+  const input = element("input", "", "", {name, ...given});
+  home.append(element("label", "", [word, input]));
   return input;
 }
 function select(home, word, name, options, value) {
-  const label = element("label", "", word), list = element("select", "", "", {name});
-  for (const [text, shown] of options) list.append(new Option(shown, text, false, text === value));
-  label.append(list);
-  home.append(label);
+  const list = element("select", "", options.map(([text, shown]) => new Option(shown, text)), {name, value});
+  home.append(element("label", "", [word, list]));
   return list;
 }
 // A question for which the recordings are read; meanwhile it can be stopped.
@@ -137,60 +134,40 @@ function tyreAndRig(tyre, rig, disc) {
   type.addEventListener("change", curved);
   curved();
 }
+const checkbox = (checked, given) => element("input", "", "", {type: "checkbox", checked, ...given});
 function group(one) {
-  const home = element("section"), files = element("div", "files"), scroll = element("div", "scroll");
-  const names = one.files.map(file => file.name);
-  home.append(element("h2", "",
-    names.length > 3 ? `${names[0]} ... ${names[names.length - 1]} (${names.length} files)` : names.join(", ")));
-  for (const file of one.files) {
-    const line = element("div"), used = element("label"), back = element("label");
-    const box = element("input", "", "", {type: "checkbox", checked: file.used !== false}),
-      backward = element("input", "", "", {type: "checkbox", checked: file.backward});
-    box.addEventListener("change", () => { file.used = box.checked; });
-    backward.addEventListener("change", () => { file.backward = backward.checked; });
-    used.append(box, `${file.name}, ${file.rows} row${file.rows === 1 ? "" : "s"} `);
-    back.append(backward, "rolls backwards");
-    line.append(used, " ", back);
-    files.append(line);
-  }
-  const folded = element("details", "", "", {open: names.length < 4});
-  folded.append(element("summary", "", "files"), files);
-  const rows = element("table"), head = rows.insertRow();
+  const names = one.files.map(file => file.name), title = names.length > 3
+    ? `${names[0]} ... ${names[names.length - 1]} (${names.length} files)` : names.join(", ");
+  const files = one.files.map(file => element("div", "", [
+    element("label", "", [
+      checkbox(file.used !== false, {onchange: event => { file.used = event.target.checked; }}),
+      `${file.name}, ${file.rows} row${file.rows === 1 ? "" : "s"} `]), " ",
+    element("label", "", [
+      checkbox(file.backward, {onchange: event => { file.backward = event.target.checked; }}), "rolls backwards"])]));
   const words = ["heading", "unit in the file", "readings", "is", "read in unit", "turn sign", ""];
-  head.append(...words.map(word => element("th", "", word)));
-  for (const column of one.columns) rows.append(row(column));
-  scroll.append(rows);
-  home.append(folded, scroll);
-  for (const remark of one.remarks) home.append(element("p", "sub", remark));
-  return home;
+  const head = element("tr", "", words.map(word => element("th", "", word)));
+  return element("section", "", [element("h2", "", title),
+    element("details", "", [element("summary", "", "files"), element("div", "files", files)],
+      {open: names.length < 4}),
+    element("div", "scroll", [element("table", "", [element("tbody", "", [head, ...one.columns.map(row)])])]),
+    ...one.remarks.map(remark => element("p", "sub", remark))]);
 }
 function row(column) {
-  const line = element("tr"),
-    cell = content => { const made = element("td"); made.append(content); line.append(made); return made; };
-  cell(column.heading);
-  cell(column.stated);
-  cell(column.range ? column.range.map(x => Number(x.toPrecision(4))).join(" to ") : "text");
-  const is = element("select");
-  is.setAttribute("aria-label", `${column.heading} is`);
-  is.append(new Option("not used", "", false, !column.channel));
-  for (const channel of table.channels) is.append(new Option(channel.name, channel.name, false,
-    channel.name === column.channel));
+  const names = ["", ...table.channels.map(one => one.name)];
+  const is = element("select", "", names.map(name => new Option(name || "not used", name)),
+    {ariaLabel: `${column.heading} is`, value: column.channel || ""});
+  const unit = element("input", "", "", {value: column.unit, placeholder: "as stated", size: 8,
+    ariaLabel: `unit of ${column.heading}`, onchange: () => { column.unit = unit.value.trim(); }});
+  const minus = checkbox(column.minus, {ariaLabel: `turn the sign of ${column.heading}`,
+    onchange: () => { column.minus = minus.checked; }});
+  const range = column.range ? column.range.map(x => Number(x.toPrecision(4))).join(" to ") : "text";
+  const line = element("tr", "", [column.heading, column.stated, range, is, unit, minus, column.why].map((inside, k) =>
+    element("td", k === 6 ? "why" : "", [inside])));
   const about = () => {
-    const known = table.channels.find(one => one.name === is.value);
-    is.title = known ? known.about : "";
+    is.title = table.channels.find(one => one.name === is.value)?.about ?? "";
     line.classList.toggle("unused", !is.value);
   };
-  is.addEventListener("change", () => { column.channel = is.value; about(); });
-  cell(is);
-  const unit = element("input", "", "", {value: column.unit, placeholder: "as stated", size: 8});
-  unit.setAttribute("aria-label", `unit of ${column.heading}`);
-  unit.addEventListener("change", () => { column.unit = unit.value.trim(); });
-  cell(unit);
-  const minus = element("input", "", "", {type: "checkbox", checked: column.minus});
-  minus.setAttribute("aria-label", `turn the sign of ${column.heading}`);
-  minus.addEventListener("change", () => { column.minus = minus.checked; });
-  cell(minus);
-  cell(column.why).className = "why";
+  is.onchange = () => { column.channel = is.value; about(); };
   about();
   return line;
 }

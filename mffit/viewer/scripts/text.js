@@ -11,9 +11,7 @@ export function written(x, most = 6) {
 export const trimmed = text => text.includes(".") ? text.replace(/0+$/, "").replace(/\.$/, "") : text;
 export function symbol(quantity) {
   const [letter, low] = quantity.symbol.split("_");
-  const span = element("span", "symbol", letter);
-  if (low) span.append(element("sub", "", low));
-  return span;
+  return element("span", "symbol", low ? [letter, element("sub", "", low)] : letter);
 }
 export const named = ({word, unit}) => unit ? `${word} [${unit}]` : word;
 export const unitOf = ({unit}) => element("span", "unit", unit ? ` [${unit}]` : "");

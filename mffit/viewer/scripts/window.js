@@ -3,7 +3,7 @@ import {ENDED, alive, asked, hasEnded, listen, sent, takesRecordings} from "./ca
 import {pointName, showChosen} from "./choice.js";
 import {cells, dropMoves, moves, showRow, tryOut} from "./coefficients.js";
 import {content} from "./content.js";
-import {byId, details, element, key} from "./dom.js";
+import {byId, details, element, key, numberField} from "./dom.js";
 import {hooks, left, lineRanges, markLeftOut, project, rows, setTrial, trial} from "./model.js";
 import {frame, remember, update} from "./pictures.js";
 import {chosen} from "./points.js";
@@ -50,8 +50,7 @@ const drafts = {};  // by coefficient, what is typed into its limits and not sav
 hooks.extendRow = (row, keys, box) => {
   const held = entry => typeof entry === "number" || entry === "base";
   const now = () => Number((row.name in trial ? trial[row.name] : row.value).toPrecision(9));
-  const problem = element("p", "problem");
-  problem.setAttribute("role", "alert");
+  const problem = element("p", "problem", "", {role: "alert"});
   const refused = found => {
     const field = (found.key || "").startsWith(`coefficients.${row.name}.`) ? found.key.split(".").pop() : "";
     problem.textContent = found.key ? `${field || row.name}: ${found.sentence}` : found.error;
@@ -91,24 +90,18 @@ hooks.extendRow = (row, keys, box) => {
 };
 // Fields for the table of a coefficient; empty ones are not written.
 function limitsForm(row, change, refused, close) {
-  const form = element("form", "limits"), draft = drafts[row.name];
+  const draft = drafts[row.name];
   const [low, high] = row.bounds.map(x => x === null ? "none" : `${Number(x.toPrecision(5))}`);
-  const fields = {min: ["min", low], max: ["max", high], start: ["start", "chosen"], value: ["known value", "none"],
-    u: ["its u (1 sigma)", "none"]};
-  for (const [name, [word, usual]] of Object.entries(fields)) {
-    const label = element("label", "", word),
-      input = Object.assign(element("input", "number"), {type: "number", step: "any", name, placeholder: usual});
-    if (name in draft) input.value = draft[name];
-    input.setAttribute("aria-label", `${row.name}: ${name}`);
-    input.addEventListener("input", () =>
-      { if (Number.isFinite(input.valueAsNumber)) draft[name] = input.valueAsNumber; else delete draft[name]; });
-    label.append(input);
-    form.append(label);
-  }
-  const save = alive(Object.assign(element("button", "small", "save"), {type: "submit"})),
-    cancel = key("cancel", "close without saving", close);
-  form.append(save, cancel);
-  form.noValidate = true;
+  const fields = Object.entries({min: ["min", low], max: ["max", high], start: ["start", "chosen"],
+    value: ["known value", "none"], u: ["its u (1 sigma)", "none"]}).map(([name, [word, placeholder]]) => {
+    const field = numberField({name, placeholder, value: draft[name] ?? "", ariaLabel: `${row.name}: ${name}`,
+      oninput: () =>
+        { if (Number.isFinite(field.valueAsNumber)) draft[name] = field.valueAsNumber; else delete draft[name]; }});
+    return element("label", "", [word, field]);
+  });
+  const save = alive(element("button", "small", "save", {type: "submit"}));
+  const form = element("form", "limits", [...fields, save, key("cancel", "close without saving", close)], {
+    noValidate: true, onkeydown: event => { if (event.key === "Escape") { event.stopPropagation(); close(); } }});
   form.addEventListener("submit", async event => {
     event.preventDefault();
     const wrong = [...form.querySelectorAll("input")].find(input => input.validity.badInput);
@@ -116,7 +109,6 @@ function limitsForm(row, change, refused, close) {
       sentence: "this is not a number; write one, with a decimal point"});
     if (await change({...draft})) close();
   });
-  form.addEventListener("keydown", event => { if (event.key === "Escape") { event.stopPropagation(); close(); } });
   return form;
 }
 byId("other").addEventListener("click", () => byId("other-file").click());
@@ -143,14 +135,12 @@ const leaveOut = hooks.leaveOut = () => {
   dialog.showModal();
   byId("ask-why").select();
 };
-hooks.chosenActions = () => {
-  const actions = [];
-  if (chosen.some(i => !left[i])) actions.push(key("Leave out", "asks why, and writes it into tyre.toml (Delete)",
-    leaveOut));
-  if (chosen.some(i => left[i])) actions.push(key("Take back", "removes it from [fit] exclude of tyre.toml",
-    () => edit("take_back", {readings: lineRanges(chosen.filter(i => left[i]))})));
-  return actions.map(alive);
-};
+hooks.chosenActions = () => [
+  ...chosen.some(i => !left[i])
+    ? [key("Leave out", "asks why, and writes it into tyre.toml (Delete)", leaveOut)] : [],
+  ...chosen.some(i => left[i]) ? [key("Take back", "removes it from [fit] exclude of tyre.toml",
+    () => edit("take_back", {readings: lineRanges(chosen.filter(i => left[i]))}))] : [],
+].map(alive);
 
 function setLive(state) {
   live = state;
@@ -189,11 +179,8 @@ const WORDS = {fit: "Refit", build: "Build", diagnose: "Diagnosis", plan: "Plan"
 function showNews() {
   const box = byId("news"), news = live.news;
   box.hidden = !news;
-  if (!news) return box.replaceChildren();
-  box.textContent = `New recordings: ${news.lines.join("; ")}. `;
-  if (news.unlisted.length) box.append(Object.assign(element("a", "", `Add ${news.unlisted.join(", ")} to tyre.toml`),
-    {href: "add"}));
-  else box.append("Refit takes them in.");
+  box.replaceChildren(...news ? [`New recordings: ${news.lines.join("; ")}. `, news.unlisted.length
+    ? element("a", "", `Add ${news.unlisted.join(", ")} to tyre.toml`, {href: "add"}) : "Refit takes them in."] : []);
 }
 function showStatus() {
   if (hasEnded()) dropMoves(one => !one.trial);
@@ -216,25 +203,21 @@ function showStatus() {
     : "tyre.toml or a file that it names differs from the fit that is shown: Refit.");
 }
 function showLinks() {
-  const parts = [];
   byId("add-recordings").hidden = hasEnded();
-  for (const page of hasEnded() ? [] : live.pages.filter(one => one.href || live.fits)) {
-    const part = document.createElement("span");
+  byId("links").replaceChildren(...(hasEnded() ? [] : live.pages.filter(one => one.href || live.fits)).map(page => {
+    const part = element("span");
     if (page.href) {
-      const link = Object.assign(document.createElement("a"),
-        {href: page.href, target: "_blank", textContent: page.title});
-      if (page.old) link.append(" (older than tyre.toml)");
-      part.append(link);
-      for (const name of page.files) part.append(Object.assign(document.createElement("a"),
-        {href: `${page.href.replace(/[^/]*$/, "")}${encodeURIComponent(name)}`, download: name, textContent: name}));
+      const folder = page.href.replace(/[^/]*$/, "");
+      part.append(element("a", "", page.old ? `${page.title} (older than tyre.toml)` : page.title,
+        {href: page.href, target: "_blank"}), ...page.files.map(name =>
+        element("a", "", name, {href: `${folder}${encodeURIComponent(name)}`, download: name})));
     }
     const make = key(page.href ? "again" : `Make: ${page.title.toLowerCase()}`,
       `as mffit ${page.run} on the command line, into out/`, () => post(`run/${page.run}`));
     make.disabled = !!live.run;
     if (live.fits) part.append(make);
-    parts.push(part);
-  }
-  byId("links").replaceChildren(...parts);
+    return part;
+  }));
 }
 
 // ---- settings: every key of tyre.toml that is one value, with its default; empty fields are not written
@@ -257,19 +240,15 @@ async function showSettings() {
   if (at && byId(at)) byId(at).focus();
 }
 function settingRow({key: name, value, default: usual, choices}, id, change) {
-  const line = element("div", "setting"), label = element("label", "", name), problem = element("p", "problem");
-  const field = document.createElement(choices.length ? "select" : "input");
-  if (choices.length) field.append(new Option(`(${usual || "none"})`, ""),
-    ...choices.map(text => new Option(text, text)));
-  else field.placeholder = usual || "none";
-  Object.assign(field, {id, value});
-  label.htmlFor = id;
-  problem.setAttribute("role", "alert");
-  line.classList.toggle("written", value !== "");
-  field.addEventListener("change", () => { problem.textContent = "";
-    edit("setting", change(field.value.trim()), found => { problem.textContent = found.sentence || found.error; }); });
-  line.append(label, field, problem);
-  return line;
+  const problem = element("p", "problem", "", {role: "alert"}), given = {id, onchange: () => {
+    problem.textContent = "";
+    edit("setting", change(field.value.trim()), found => { problem.textContent = found.sentence || found.error; });
+  }};
+  const options = [new Option(`(${usual || "none"})`, ""), ...choices.map(text => new Option(text, text))];
+  const field = choices.length ? element("select", "", options, {...given, value})
+    : element("input", "", "", {...given, value, placeholder: usual || "none"});
+  return element("div", value === "" ? "setting" : "setting written",
+    [element("label", "", name, {htmlFor: id}), field, problem]);
 }
 byId("settings").addEventListener("toggle", showSettings);
 

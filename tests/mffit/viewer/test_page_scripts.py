@@ -105,11 +105,38 @@ def test_columns_come_back_as_they_were(engine):
     assert given["e"] == []
 
 
-def test_the_misfit_is_that_of_the_build(engine, result):
+def test_the_misfit_is_that_of_the_build(engine, result, data):
+    """Also of channels that are fitted by themselves."""
+    for row in data["channels"]:
+        assert engine(f"misfit('{row['name']}').rmse") == pytest.approx(row["rmse"], rel=SIX_DIGITS)
     for name in result.fit.channels:
         found = engine(f"misfit('{name}')")
         assert found["rmse"] == pytest.approx(result.fit.channels[name].rmse, rel=SIX_DIGITS)
         assert found["over_noise"] == pytest.approx(result.trust.over_noise[name], rel=SIX_DIGITS)
+
+
+def test_what_the_rig_read_is_what_the_tyre_felt_and_the_rig_added(engine, result):
+    whole = concatenate([result.points, result.excluded])
+    for name in ("Fy", "Mz"):
+        assert engine(f"columns.shift.{name} !== undefined")
+        assert engine(f"columns.read.{name}") == pytest.approx(whole.channel(name), rel=1e-5, abs=1e-3)
+    assert engine("columns.read.alpha ?? columns.alpha") == pytest.approx(whole.alpha, rel=1e-5, abs=1e-6)
+
+
+def test_a_flipped_tyre_has_its_conicity_the_other_way(result):
+    """The misfit of the same readings, half of them said to be of a flipped tyre, is that of the simulation."""
+    points = result.points.replace(mount=np.where(np.arange(len(result.points)) % 2, -1, 1))
+    values = result.fit.tyre.values | {"PHY1": 0.004, "PVY1": 0.03}
+    tyre = result.fit.tyre.replace(**{name: values[name] for name in ("PHY1", "PVY1")})
+    simulation = result.fit.simulation.with_numbers({name: tyre[name] for name in ("PHY1", "PVY1")})
+    fit = replace(result.fit, tyre=tyre, simulation=simulation)
+    engine = Engine(project_data(replace(result, points=points, fit=fit)))
+    wanted, unflipped = (
+        float(np.sqrt(np.mean((simulation.readings(one).Fy - one.Fy) ** 2)))
+        for one in (points, result.points)
+    )
+    assert abs(wanted - unflipped) > 0.1 * wanted
+    assert engine("misfit('Fy').rmse") == pytest.approx(wanted, rel=1e-3)
 
 
 def test_a_moved_coefficient_gives_the_misfit_of_that_tyre(engine, result):

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import csv
+import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import mffit
 import tir
-from mffit.viewer.controls import CONTROLS, OUTPUTS, PANELS
+from mffit.viewer.controls import CONTROLS, FAN, OUTPUTS, PANELS
 from tests.browser import PAPER, PHONE, complaints, console_errors, look, opened, sheets
 from tir.codegen.program import INPUTS, Switches, trace
 
@@ -219,6 +223,101 @@ def test_what_follows_from_an_estimated_longitudinal_force_is_dashed(tmp_path):
         assert "Fx estimated" in browser.find_element("css selector", "#legend .about").text
     assert min(zones["Fx-kappa"]) == 1
     assert min(zones["Fy-alpha"]) == 0
+
+
+def until(true: Callable[[], Any]) -> Any:
+    end = time.monotonic() + 30.0
+    while not (found := true()):
+        assert time.monotonic() < end, "not in time"
+        time.sleep(0.05)
+    return found
+
+
+def shown(browser, name: str) -> float:
+    return float(browser.find_element("id", name).get_attribute("value"))
+
+
+def test_the_address_keeps_what_is_seen(browser):
+    """Condition, hidden tyres and differences; what is no state of a page leaves it as it opens."""
+    move(browser, gamma=7, Fz=2000)
+    for css in ("input[value=off]", "#difference", "#legend tr:nth-child(3) input"):
+        browser.find_element("css selector", css).click()
+    drawn(browser)
+    before = browser.execute_script("return mffit.curve('Fy-alpha', 1)")
+    browser.refresh()
+    drawn(browser)
+    assert browser.execute_script("return mffit.curve('Fy-alpha', 1)") == before
+    assert (shown(browser, "gamma"), shown(browser, "Fz")) == (7.0, 2000.0)
+    assert browser.find_elements("css selector", "#legend .hidden .name")[0].text == "car"
+    home = browser.current_url.partition("#")[0]
+    for other in ("null", "7", "%7B", '{"now":{"Fz":"x"},"use":3,"hidden":5}'):
+        browser.get("about:blank")
+        browser.get(f"{home}#{other}")
+        drawn(browser)
+        assert shown(browser, "Fz") == 1400.0
+        assert len(lines(browser, "Fy-alpha")) == len(FILES)
+    browser.get("about:blank")
+    browser.get(home)
+    assert console_errors(browser) == []
+
+
+def test_keys_zoom_a_picture_and_move_its_slider(browser):
+    canvas = browser.find_element("css selector", "#Fy-alpha canvas")
+    box = lambda: browser.execute_script("return mffit.place('Fy-alpha').box")  # noqa: E731
+    whole = box()
+    canvas.send_keys("+")
+    drawn(browser)
+    assert np.ptp(box()["x"]) == pytest.approx(np.ptp(whole["x"]) / 1.25)
+    move(browser, Fz=3000)
+    assert np.ptp(box()["x"]) == pytest.approx(np.ptp(whole["x"]) / 1.25)  # a view stays
+    move(browser, Fz=1400)
+    canvas.send_keys("0")
+    drawn(browser)
+    assert box() == whole
+    step = float(browser.find_element("id", "alpha").get_attribute("step"))
+    canvas.send_keys("\ue014\ue014")  # right
+    assert shown(browser, "alpha") == pytest.approx(2.0 * step)
+    canvas.send_keys("\ue012\ue012")  # left
+    assert shown(browser, "alpha") == pytest.approx(0.0)
+
+
+def test_the_numbers_of_a_picture_are_those_of_tir(browser, tmp_path):
+    """As the menu saves them: of every tyre, at the condition of the sliders and at the sideslips of the thin lines."""
+    browser.execute_cdp_cmd(
+        "Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(tmp_path)}
+    )
+    move(browser, Fz=1800, alpha=0)
+    browser.execute_script("document.querySelectorAll('#Fy-Fx .more button')[1].click()")
+    (found,) = until(lambda: list(tmp_path.glob("*.csv")))
+    rows = list(csv.reader(found.read_text(encoding="utf-8").splitlines()))
+    heading = "tyre,load [N],sideslip [deg],camber [deg],longitudinal slip,path curvature [1/m],speed [m/s],pressure [kPa]"
+    assert rows[0][:8] == heading.split(",")
+    assert rows[0][8:] == ["longitudinal force [N]", "side force [N]"]
+    own = np.array([row[1:] for row in rows if row[0] == LONG], dtype=float).T
+    assert set(own[1]) == {0.0, *(angle for angle in FAN)}
+    tyre = tir.read(FILES[1])
+    forces = tyre(1800.0, *np.radians(own[1:3]), own[3], phi_t=0.0, Vx=own[5], p=1e3 * own[6])
+    assert own[7] == pytest.approx(forces.Fx, rel=1e-5, abs=1e-2)
+    assert own[8] == pytest.approx(forces.Fy, rel=1e-5, abs=1e-2)
+    browser.find_element("id", "reset").click()
+    drawn(browser)
+
+
+def test_a_notebook_shows_the_page(browser, tmp_path):
+    """In a frame without an address of its own, the controls act all the same."""
+    frame = mffit.show(FILES[0])._repr_html_()
+    (tmp_path / "notebook.html").write_text(f"<!doctype html>{frame}", encoding="utf-8")
+    home = browser.current_url
+    browser.get((tmp_path / "notebook.html").as_uri())
+    browser.switch_to.frame(0)
+    until(lambda: browser.execute_script("return window.mffit?.place('Fy-alpha')"))
+    assert len(lines(browser, "Fy-alpha")) == 1
+    browser.find_element("id", "loads").click()
+    drawn(browser)
+    assert len(lines(browser, "Fy-alpha")) == 3
+    browser.switch_to.default_content()
+    assert console_errors(browser) == []
+    browser.get(home)
 
 
 def test_hostile_names_do_no_harm(browser):
