@@ -8,8 +8,9 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from collections.abc import Callable
 from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -53,6 +54,13 @@ def fmus(tmp_path_factory) -> dict[int, Path]:
     file.write_bytes(FILE.read_bytes())
     name = "tyre_1_front____rear___x_"
     return {fmi: write_fmu(file, folder / str(fmi), fmi=fmi, name=name, turn_slip=True) for fmi in (2, 3)}
+
+
+@pytest.fixture(scope="module")
+def fmu_of(tmp_path_factory) -> Callable[[int, bool], Path]:
+    """The FMU of the file as it is, by version and by whether its contact lags; each is compiled once."""
+    folder = tmp_path_factory.mktemp("plain")
+    return cache(lambda fmi, lags: write_fmu(FILE, folder / f"{fmi} {lags}", fmi=fmi, transient=lags))
 
 
 def conditions(n: int) -> dict[str, np.ndarray]:
@@ -139,12 +147,12 @@ def test_scaling_factors_and_temperature_can_be_turned(tmp_path, fmi):
 
 @needs_compiler
 @pytest.mark.parametrize("fmi", [2, 3])
-def test_the_lag_of_the_contact_is_that_of_tir(tmp_path, fmi):
+def test_the_lag_of_the_contact_is_that_of_tir(fmu_of, tmp_path, fmi):
     """A steering and braking manoeuvre that ends in standstill, in steps of 10 ms."""
     fmpy = pytest.importorskip("fmpy")
     from fmpy.validation import validate_fmu
 
-    fmu = write_fmu(FILE, tmp_path, fmi=fmi, transient=True)
+    fmu = fmu_of(fmi, True)
     assert validate_fmu(str(fmu)) == []
     with zipfile.ZipFile(fmu) as archive:
         archive.extractall(tmp_path)
@@ -190,10 +198,10 @@ def test_the_lag_of_the_contact_is_that_of_tir(tmp_path, fmi):
         ({"Fz": float("inf")}, "Fz = inf"),
     ],
 )
-def test_a_result_that_is_no_number_has_a_status_and_a_sentence(tmp_path, fmi, transient, start, said):
+def test_a_result_that_is_no_number_has_a_status_and_a_sentence(fmu_of, fmi, transient, start, said):
     """A force over a nominal load of zero, 4.E2a, is no number, and a simulation must not go on with it."""
     fmpy = pytest.importorskip("fmpy")
-    fmu, logged = write_fmu(FILE, tmp_path, fmi=fmi, transient=transient), []
+    fmu, logged = fmu_of(fmi, transient), []
     run = partial(
         fmpy.simulate_fmu, str(fmu), fmi_type="CoSimulation", stop_time=0.02, output_interval=0.01, output=["Fx", "Fy"],
         logger=lambda *given: logged.append(given[-1].decode()),
@@ -208,9 +216,9 @@ def test_a_result_that_is_no_number_has_a_status_and_a_sentence(tmp_path, fmi, t
 
 @needs_compiler
 @pytest.mark.parametrize("fmi", [2, 3])
-def test_a_step_that_gives_no_number_is_refused_and_leaves_the_contact(tmp_path, fmi):
+def test_a_step_that_gives_no_number_is_refused_and_leaves_the_contact(fmu_of, tmp_path, fmi):
     fmpy = pytest.importorskip("fmpy")
-    fmu, logged = write_fmu(FILE, tmp_path, fmi=fmi, transient=True), []
+    fmu, logged = fmu_of(fmi, True), []
     description = fmpy.read_model_description(str(fmu))
     reference = {x.name: x.valueReference for x in description.modelVariables}
     instance = fmpy.instantiate_fmu(
