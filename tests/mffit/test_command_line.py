@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import shlex
 import subprocess
 import sys
 import tomllib
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +20,7 @@ from disc_project import Project, disc_project, rows
 import tir
 from mffit import config, pipeline
 from mffit.cli import main
+from mffit.errors import InputError
 from mffit.points import load
 
 ROOT = Path(__file__).parents[2]
@@ -61,10 +64,17 @@ def disc(folder: Path) -> Project:
 
 
 @pytest.fixture(scope="module")
-def built(tmp_path_factory) -> Path:
-    folder = tmp_path_factory.mktemp("built")
-    assert mffit("build", disc(folder).write(), "--ensemble", 2) == 0
-    return folder
+def printed(tmp_path_factory) -> tuple[Path, str, str]:
+    """The folder of a build, and what the command printed to both streams."""
+    folder, out, err = tmp_path_factory.mktemp("built"), io.StringIO(), io.StringIO()
+    with redirect_stdout(out), redirect_stderr(err):
+        assert mffit("build", disc(folder).write(), "--ensemble", 2) == 0
+    return folder, out.getvalue(), err.getvalue()
+
+
+@pytest.fixture(scope="module")
+def built(printed) -> Path:
+    return printed[0]
 
 
 @pytest.fixture(scope="module")
@@ -305,25 +315,30 @@ def test_spin_of_the_paper_tables_prints_no_nan(case, tmp_path, capsys):
     assert "nan" not in (said.out + said.err).lower()
 
 
-def test_build_prints_one_screen_and_everything_on_request(tmp_path, capsys):
-    project = disc(tmp_path).write()
-    assert mffit("build", project) == 0
-    said = capsys.readouterr()
-    lines = [*said.out.splitlines(), *said.err.splitlines()]
+def test_build_prints_one_screen_and_everything_on_request(printed, result, capsys, monkeypatch):
+    """What is explained is read where it is of these settings, and built where it is not."""
+
+    def building(*_, **__):
+        raise InputError("it is built")
+
+    monkeypatch.setattr(pipeline, "build", building)
+    folder, said, warned = printed
+    lines = [*said.splitlines(), *warned.splitlines()]
     assert len(lines) <= 30  # with three warnings, none of which is cut
     assert lines[0].startswith("toy.tir is ")
-    assert f"written to {tmp_path / 'out'}: report.html, result.json, points.csv, plots" in said.out
-    assert "toy-normal.tir: for simulators without turn slip" in said.out
-    said_of_road = " ".join(said.out.split())
+    assert f"written to {folder / 'out'}: report.html, result.json, points.csv, plots" in said
+    assert "toy-normal.tir: for simulators without turn slip" in said
+    said_of_road = " ".join(said.split())
     assert said_of_road.index("road, 1500 N") < said_of_road.index("written to")
     assert "toy-normal.tir misses the road by" in said_of_road
     assert "or the other side of the disc" in said_of_road
-    assert mffit("build", project, "--explain", "--no-report") == 0
+    assert mffit("build", folder / "tyre.toml", "--ensemble", 2, "--explain") == 0
     whole = capsys.readouterr()
     assert "Tested: " in whole.out
-    assert "Tested: " not in said.out
-    warnings = json.loads((tmp_path / "out" / "result.json").read_text(encoding="utf-8"))["warnings"]
-    assert all(f"warning: {sentence}" in whole.err for sentence in warnings)
+    assert "Tested: " not in said
+    assert all(f"warning: {sentence}" in whole.err for sentence in result["warnings"])
+    assert mffit("build", folder / "tyre.toml", "--ensemble", 3, "--explain") == 2
+    assert "it is built" in capsys.readouterr().err
 
 
 def next_lines(said: str) -> list[list[str]]:
