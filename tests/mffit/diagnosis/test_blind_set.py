@@ -13,7 +13,6 @@ from blind_set import ADDED
 SEED = 8
 OUTRIGHT = (
     "8035-curvature-asymmetry-faint-exact",
-    "8042-residual-torque-large-inexact",
     "8082-backlash-moderate-inexact",
     "8202-camber-reduction-load+speed-large-exact",
     "8400-none-large-inexact",

@@ -52,10 +52,9 @@ def test_a_backward_run_separates_drag_from_the_zero(tmp_path, effect):
     assert found[effect] - found[next(iter(LIKE[effect]))] > 6.0
 
 
-@pytest.mark.parametrize("seed", [1, 2])
-def test_an_effect_as_large_as_published_is_found_in_full(tmp_path, seed):
+def test_an_effect_as_large_as_published_is_found_in_full(tmp_path):
     """MFeval's own tyre has RBX3 186; neither a limit of the table nor the usual size of the effect holds the answer back."""
-    found = diagnosed(Hidden(tyre={"RBX3": 155.0}), 1.0, seed, tmp_path)
+    found = diagnosed(Hidden(tyre={"RBX3": 155.0}), 1.0, 1, tmp_path)
     (effect,) = found.effects
     assert effect.effect.id == "combined-camber"
     value, u = effect.parameters["RBX3"]

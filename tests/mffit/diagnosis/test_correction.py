@@ -68,11 +68,10 @@ def test_an_environment_effect_leaves_the_file_unchanged(tmp_path):
     assert found.tyre.values == case.given.values
 
 
-@pytest.mark.parametrize("misalignment", [-1.0, 0.5])
-def test_misaligned_wheel_of_the_paper_is_named_and_eps_gamma_restored(misalignment, tmp_path):
+def test_misaligned_wheel_of_the_paper_is_named_and_eps_gamma_restored(tmp_path):
     """Mottola and Massaro 2022, section 5: half a degree or one to either side ruins eps_gamma; backward runs reveal it."""
-    case = draw_case(f"paper{misalignment:+}", (), "large", 31)
-    case = _with_misalignment(case, misalignment)
+    misalignment = 0.5
+    case = _with_misalignment(draw_case("paper", (), "large", 31), misalignment)
     config, points = loaded(case, tmp_path)
     found: Diagnosis = diagnose(points, case.given, config)
     assert found.effects[0].effect.id == "sideslip-misalignment"

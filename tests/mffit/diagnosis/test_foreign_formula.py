@@ -47,10 +47,9 @@ def assert_named(found: Diagnosis, *effects: str) -> None:
     assert found.unexplained
 
 
-@pytest.mark.parametrize("seed", [2, 3])
-def test_a_wrong_camber_reduction_is_named_beside_the_miss_of_the_formula(fitted_toy, tmp_path, seed):
+def test_a_wrong_camber_reduction_is_named_beside_the_miss_of_the_formula(fitted_toy, tmp_path):
     wrong = fitted_toy.replace(PECP1=fitted_toy["PECP1"] + 0.3)
-    found = mffit.diagnose(toy(tmp_path, seed), wrong)
+    found = mffit.diagnose(toy(tmp_path, 2), wrong)
     assert_named(found, "camber-reduction")
     assert found.tyre["PECP1"] == pytest.approx(fitted_toy["PECP1"], abs=0.1)
 

@@ -54,9 +54,7 @@ CASES = [
     ),
     ("flat-track", "sideslip_2100N_10deg.csv", {"Fy_N": 1.0 / 9.80665}, "kgf"),
     ("flat-track", "sideslip_2100N_20deg.csv", {"gamma_deg": -1.0}, "its camber reversed"),
-    ("flat-track", "sideslip_1400N_35deg.csv", {"Mz_Nm": 1e-3}, "kN m"),
     ("rear-190-55", "camber_1650N.csv", {"Mz_Nm": -1.0}, "moment reversed"),
-    ("front-120-70", "coupled_1400N_35deg.csv", {"gamma_deg": -1.0}, "camber reversed"),
 ]
 
 
