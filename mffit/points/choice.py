@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from mffit.constants import FALSE_ALARM
 from mffit.points import constants
-from mffit.points.faulty import Fault, bridged
+from mffit.points.faulty import Fault, bridged, faults, short_gaps
 from mffit.points.mean import mean_and_error
 from mffit.points.steady import Scale, SteadySettings, stretches
 from mffit.points.stretch import MOVE, PLATEAU, Stretch
@@ -23,14 +24,30 @@ def settings_of(sweep: Sweep) -> SteadySettings:
     return SteadySettings(**{name: getattr(sweep, name) for name in SteadySettings._fields})
 
 
-def chosen(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[Stretch]:
+def chosen(
+    sweep: Sweep, wrong: list[Fault], scale: Scale | None, whole: Sweep | None = None
+) -> list[Stretch]:
     """All stretches of a recording in time order, without their transients, or with the reason for dropping them.
 
-    ``scale`` is the usual size of the settings in the whole campaign; if None, that of this series.
+    ``scale`` is the usual size of the settings in the whole campaign; if None, that of this series. ``whole`` is the recording
+    with the lines that are left out by hand, which divides it: what a rig did does not depend on what is left out.
     """
     # Only to divide the recording: means take no sample that is bridged.
     sweep = bridged(sweep, (*SteadySettings._fields[1:], "Fy", "Mz"))
-    return _judged(sweep, _stretches(sweep, wrong, scale))
+    if whole is None:
+        return _judged(sweep, _stretches(sweep, wrong, scale))
+    whole = bridged(_without_glitches(whole, ~np.isin(whole.line, sweep.line)), SteadySettings._fields[1:])
+    found = _stretches(whole, faults(whole), scale)
+    begins = np.searchsorted(sweep.line, whole.line[[stretch.begin for stretch in found]])
+    ends = np.searchsorted(sweep.line, whole.line[[stretch.end - 1 for stretch in found]], "right")
+    kept = zip(found, begins.tolist(), ends.tolist(), strict=True)
+    return _judged(sweep, [s._replace(begin=begin, end=end) for s, begin, end in kept if end > begin])
+
+
+def _without_glitches(whole: Sweep, left_out: np.ndarray) -> Sweep:
+    """The recording without the angles that are left out (n,) for a short time, so that :func:`bridged` fills them in."""
+    alpha, gamma = (np.where(short_gaps(whole.time, left_out), np.nan, x) for x in (whole.alpha, whole.gamma))
+    return replace(whole, alpha=alpha, gamma=gamma)
 
 
 def _stretches(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[Stretch]:
@@ -49,7 +66,7 @@ def _stretches(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[St
     if np.any(reason >= 0):
         settings = SteadySettings(*(np.where(np.isfinite(x), x, 0.0) for x in settings))
     found = []
-    for stretch in stretches(settings, sweep.point, cuts.tolist(), scale, sweep.line):
+    for stretch in stretches(settings, sweep.point, cuts.tolist(), scale):
         k = int(reason[stretch.begin]) if sweep.point is None else -1
         found.append(stretch if k < 0 else Stretch(stretch.begin, stretch.end, ends[k].reason, MOVE))
     return sorted(found)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
@@ -73,8 +74,9 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     """
     phi_t = {entry.file: path_curvature(config.rig, entry) for entry in config.sweep}
     found, of_slip = _loaded(config, continuous)
-    scale = scale_of([settings_of(sweep) for sweep in found.sweeps if sweep.is_series])
-    reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in found.sweeps]
+    series = list(zip(found.sweeps, _as_recorded(config, found.sweeps, continuous), strict=True))
+    scale = scale_of([settings_of(whole or one) for one, whole in series if one.is_series])
+    reduced = [reduce(one, phi_t[one.file], scale, whole) for one, whole in series]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
     if not (config.rig.on_disc or continuous):
         points = points.replace(continuous=False)
@@ -121,6 +123,19 @@ def _loaded(config: Config, continuous: bool) -> tuple[Sweeps, SlipRemarks]:
     sweeps, of_slip = against_free_rolling(with_common_clock(held), config, with_errors=continuous)
     said = (sentence for _, sentences in timed for sentence in sentences)
     return replace(found, sweeps=sweeps, warnings=(*found.warnings, *said, *of_slip.warnings)), of_slip
+
+
+def _as_recorded(config: Config, sweeps: Sequence[Sweep], continuous: bool) -> list[Sweep | None]:
+    """For each sweep, the recording with the lines that are left out by hand; None if there are none, or one cannot be read."""
+    shortened = {sweep.file for sweep in sweeps if sweep.is_series} & {one.file for one in config.fit.exclude}
+    fit = config.fit.model_copy(update={"exclude": ()})
+    found: dict[tuple[str, str], Sweep] = {}
+    for entry in config.sweep:
+        if entry.file in shortened:
+            with suppress(InputError):
+                own = _loaded(config.model_copy(update={"sweep": (entry,), "fit": fit}), continuous)[0].sweeps
+                found |= {(one.file, one.name): one for one in own if np.all(np.diff(one.time) > 0.0)}
+    return [found.get((sweep.file, sweep.name)) for sweep in sweeps]
 
 
 def _doubted(

@@ -51,7 +51,6 @@ def stretches(
     point: np.ndarray | None = None,
     cuts: Sequence[int] = (),
     scale: Scale | None = None,
-    line: np.ndarray | None = None,
 ) -> list[Stretch]:
     """The stretches of a series in time order: plateaus, where all settings rest; sweeps, where one angle or the slip moves
     through its range and all else rests; and moves, which are neither, with the reason, such as the change of an angle
@@ -59,7 +58,6 @@ def stretches(
 
     ``point`` (n,) is the label of the point of every sample, "" between points; None: the settings decide. A stretch begins at
     the samples ``cuts``, too. ``scale`` is the usual size of each setting in the whole campaign; None: that of this series.
-    ``line`` (n,) are the lines in the file, as :func:`gaps` uses them.
     """
     n = len(settings.time)
     if point is not None:
@@ -67,7 +65,7 @@ def stretches(
         bounds = zip(np.r_[0, edges], np.r_[edges, n], strict=True)
         return [Stretch(int(begin), int(end)) for begin, end in bounds if point[begin] != ""]
     scale = scale or scale_of([settings])
-    edges = np.unique(np.r_[0, gaps(settings.time, line), np.asarray(cuts, dtype=int), n])
+    edges = np.unique(np.r_[0, gaps(settings.time), np.asarray(cuts, dtype=int), n])
     found: list[Stretch] = []
     for begin, end in itertools.pairwise(edges.tolist()):
         piece = SteadySettings(*(x[begin:end] for x in settings))
@@ -77,21 +75,13 @@ def stretches(
     return found
 
 
-def gaps(time: np.ndarray, line: np.ndarray | None = None) -> np.ndarray:
-    """Indices of the first samples after gaps in time.
-
-    Where lines (n,) of the file are left out, the recording went on: that is a gap only if a rest may be hidden in it.
-    """
+def gaps(time: np.ndarray) -> np.ndarray:
+    """Indices of the first samples after gaps in time."""
     steps = np.diff(time)
     if not len(steps):
         return np.zeros(0, dtype=int)
     shortest = max(constants.GAP_OVER_STEP * float(np.median(steps)), constants.AVERAGED_TIME)
-    is_gap = steps > shortest
-    if line is not None and np.any(is_gap):
-        lines = np.diff(line)
-        recorded = lines / np.median(lines) * np.median(steps)  # [s], of the lines between
-        is_gap &= (steps > constants.SHORTEST_STRETCH) | (steps - recorded > shortest)
-    return np.flatnonzero(is_gap) + 1
+    return np.flatnonzero(steps > shortest) + 1
 
 
 def _of_piece(settings: SteadySettings, scale: Scale) -> list[Stretch]:

@@ -112,18 +112,31 @@ def series(seed=5):
     )  # fmt: skip
 
 
-def test_samples_are_left_out_before_the_reduction_to_points(project):
-    table = series()
-    table.loc[900:1039, "Fy_N"] += 200.0  # within the plateau at 0 deg
-    project.add("series.csv", table)
+def test_samples_that_are_left_out_are_in_no_mean_and_divide_no_rest(project):
+    table, usual = series(), {}
+    for spoilt in (0.0, 200.0):  # within the plateau at 0 deg
+        table.loc[900:1039, "Fy_N"] += spoilt
+        project.add("series.csv", table)
+        project.config["sweep"] = project.config["sweep"][: len(project.tables)]
+        found = points.read(excluding(project, ("series.csv", "902-1041")))
+        usual[spoilt] = found.points.Fy
+        entries = [row for row in found.left_out if row.file == "series.csv"]
+        assert (entries[0].by, entries[0].lines, entries[0].count) == ("hand", "902-1041", 140)
+        assert all(row.by == "rule" and row.why for row in entries[1:])
+    assert np.array_equal(usual[0.0], usual[200.0])
+    assert np.sum(found.points.file == found.points.files.index("series.csv")) == 5
+    assert found.excluded is None  # samples are no points
+
+
+def test_an_unreadable_line_of_a_recording_is_left_out_as_if_it_were_deleted(project):
+    project.add("series.csv", series())
     settings = excluding(project, ("series.csv", "902-1041"))
+    lines = project.text("series.csv").splitlines()
+    lines[949] = lines[949].replace(",", ",?", 1)
+    project.overwrite("series.csv", "\n".join(lines) + "\n")
     found = points.read(settings)
     deleted = points.read(without(project, "series.csv", range(900, 1040)))
     assert np.array_equal(found.points.Fy, deleted.points.Fy)
-    assert found.excluded is None  # samples are no points
-    entries = [row for row in found.left_out if row.file == "series.csv"]
-    assert (entries[0].by, entries[0].lines, entries[0].count) == ("hand", "902-1041", 140)
-    assert all(row.by == "rule" and row.why for row in entries[1:])
 
 
 def test_every_sample_of_a_recording_is_averaged_or_listed_once(project):
