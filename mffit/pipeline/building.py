@@ -74,7 +74,10 @@ def build(
     began = time.perf_counter()
     config = configuration.load(config)
     progress(READING)
-    read = _BuildInputs(config, read_points(config), read_base(config), made(input_hashes(config)))
+    of = made(
+        input_hashes(config)
+    )  # first: the digests of files that are replaced meanwhile are those of the old ones
+    read = _BuildInputs(config, read_points(config), read_base(config), of)
     progress(MEASURING)
     parts, before = measure(config, read.reading.points, read.base)
     if out is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -164,8 +165,9 @@ def inputs_of(config: Config) -> list[Path]:
 
 
 def input_hashes(config: Config) -> dict[str, str]:
-    """SHA-256 of every input file in hex, by the name that the configuration gives, in the order of :func:`input_names`."""
-    return {name: digest(config.folder / name) for name in input_names(config)}
+    """SHA-256 in hex of every input file that can be read, by its name, in the order of :func:`input_names`."""
+    found = {name: config.folder / name for name in input_names(config)}
+    return {name: digest(path) for name, path in found.items() if path.is_file() and os.access(path, os.R_OK)}
 
 
 def input_names(config: Config) -> list[str]:

@@ -12,7 +12,7 @@ import tomlkit
 from tomlkit.items import AoT, Array, Table
 
 from mffit.config.by_hand import KEYS
-from mffit.config.lines import LineListError, LineRange, line_ranges, line_text, ranges_text
+from mffit.config.lines import LineListError, LineRange, line_ranges, ranges_text
 from mffit.errors import InputError, shortened
 from mffit.window.settings import TABLES, value_of
 
@@ -86,15 +86,25 @@ def take_back(text: str, *, readings: Sequence[Mapping[str, Any]]) -> str:
                 if entry["file"] == file:
                     kept = _without(_ranges(entry), ranges)
                     if not kept:
-                        gone.append(k + 1)
+                        gone.append(k)
                     elif kept != list(_ranges(entry)):
                         entry["lines"] = _lines(kept)
-            for first, last in reversed(line_ranges(line_text(gone))) if gone else ():
-                del entries[first - 1 : last]  # at once, as each deletion numbers all entries anew
+            _remove(entries, gone)
         if not entries:
             del document["fit"]["exclude"]
 
     return _edited(text, change)
+
+
+def _remove(entries: Any, places: Sequence[int]) -> None:
+    """Remove the entries at these places, which are in order."""
+    if isinstance(entries, Array):  # numbers all entries anew at each deletion: thousands would take seconds
+        entries._reindex, number = (lambda: None), entries._reindex  # type: ignore[method-assign]
+    for place in reversed(places):  # those before it keep their numbers
+        del entries[place]
+    if isinstance(entries, Array):
+        entries._reindex = number  # type: ignore[method-assign]
+        number()
 
 
 def setting(text: str, *, table: str, key: str, value: str, file: str = "") -> str:

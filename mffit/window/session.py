@@ -170,14 +170,14 @@ def _of_file(question: Callable[[Path], Found], path: Path) -> Found | None:
     """The answer for a file, asked again only if it has changed; None if it is gone."""
     try:
         stat = path.stat()
-        found: Found = _answer(question, path, stat.st_size, stat.st_mtime_ns)
+        found: Found = _answer(question, path, (stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns))
         return found
     except OSError:
         return None
 
 
 @lru_cache
-def _answer(question: Callable[[Path], Any], path: Path, size: int, time: int) -> Any:
+def _answer(question: Callable[[Path], Any], path: Path, signature: tuple[int, ...]) -> Any:
     return question(path)
 
 

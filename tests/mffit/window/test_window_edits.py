@@ -166,6 +166,20 @@ def test_thousands_of_readings_are_left_out_and_taken_back_one_by_one(tyre_toml)
     assert rest["lines"] == ", ".join(str(line) for line in range(4, 60_000, 4))
 
 
+def test_every_other_of_many_entries_is_taken_back_and_the_comments_of_the_others_stay():
+    entries = [f'{{ file = "b.csv", lines = "{line}", why = "{line}" }}' for line in range(2, 402)]
+    text = (
+        "[fit]\nexclude = [\n" + "".join(f"    {one},  # of {k}\n" for k, one in enumerate(entries)) + "]\n"
+    )
+    gone = ", ".join(str(line) for line in range(2, 402, 2))
+    found = take_back(text, readings=[{"file": "b.csv", "lines": gone}])
+    assert [one["lines"] for one in tomllib.loads(found)["fit"]["exclude"]] == [
+        str(k) for k in range(3, 402, 2)
+    ]
+    assert all(f"# of {k}\n" in found for k in range(1, 400, 2))
+    assert leave_out(found, readings=[reading("b.csv", 3)], why="again") == found
+
+
 def test_readings_without_a_line_are_refused():
     with pytest.raises(InputError, match="file and lines"):
         leave_out(TEXT, readings=[{"file": "a.csv"}], why="x")

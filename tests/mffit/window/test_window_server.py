@@ -285,7 +285,7 @@ def test_a_project_that_a_build_refuses_already_can_be_changed(client, session):
     assert edit(client, session, "setting", table="tyre", key="base", value="").status_code == 200
 
 
-@pytest.mark.parametrize("change", ["replaced", "gone"])
+@pytest.mark.parametrize("change", ["replaced", "replaced by one of its time", "gone"])
 def test_curves_of_other_readings_are_not_those_of_a_build(session, change):
     assert session.state()["is_fitted"]
     recording = session.file.path.parent / "camber_900.csv"
@@ -293,7 +293,10 @@ def test_curves_of_other_readings_are_not_those_of_a_build(session, change):
     if change == "gone":
         recording.unlink()
     else:
+        time = recording.stat().st_mtime_ns
         recording.write_bytes(content.replace(b"0", b"1", 1))
+        if change.endswith("time"):
+            os.utime(recording, ns=(time, time))
     assert not session.state()["is_fitted"]
     recording.write_bytes(content)
     assert session.state()["is_fitted"]
