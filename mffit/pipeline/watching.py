@@ -18,6 +18,7 @@ from mffit.pipeline.intake import sweep_text
 from mffit.pipeline.measuring import alignment_of, spin_of
 from mffit.pipeline.planning import next_run_of
 from mffit.points.loading import Reading
+from mffit.recordings.constants import LOOK_AT_RECORDINGS
 from mffit.recordings.project_file import relative
 from mffit.results.campaign import NOTHING_YET, Arrival, WatchedCampaign
 from mffit.sweeps import formats
@@ -25,14 +26,12 @@ from mffit.sweeps.loading import NUMBER
 
 OF_ANOTHER = "; tyre.toml does not list this file: if it is of another tyre or rig, move it to another folder"
 """What a file that nobody listed may be, beyond what is wrong with it."""
-LOOK_EVERY = 1.0
-"""Time [s] from one look at the folder to the next."""
 
 
 def watch(
     path: str | Path,
     *,
-    every: float = LOOK_EVERY,
+    every: float = LOOK_AT_RECORDINGS,
     once: bool = False,
     pause: Callable[[float], object] | None = None,
 ) -> Iterator[WatchedCampaign]:
@@ -120,7 +119,7 @@ class _Watch:
         said, self._said = self._said, set(warnings)
         refused = {file.entry.file: file.problem for file in files if file.problem} | usable.refused
         awaited = [relative(path, self.config.folder) for path in self.arriving.waiting]
-        changed = tuple(self._changed(reading, refused, listed, awaited))
+        changed = tuple(self._changed(reading, refused, awaited))
         missing = [entry.file for entry in self.config.sweep if entry.file not in self._states]
         return WatchedCampaign(
             changed=changed,
@@ -137,15 +136,12 @@ class _Watch:
         )
 
     def _changed(
-        self,
-        reading: Reading | None,
-        refused: Mapping[str, str],
-        listed: Collection[str],
-        awaited: Collection[str],
+        self, reading: Reading | None, refused: Mapping[str, str], awaited: Collection[str]
     ) -> Iterator[Arrival]:
         """Changes of files since the previous campaign; other numbers in a sentence do not count."""
         before, self._states = self._states, {}
         files = np.array(reading.points.files)[reading.points.file] if reading else np.array([], str)
+        listed = {entry.file for entry in self.config.sweep}
         for file in self.arriving.files.values():
             name = file.entry.file
             why, own = refused.get(name, ""), int(np.sum(files == name))

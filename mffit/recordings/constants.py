@@ -40,9 +40,12 @@ ZERO_OF_A_DISC = Real(
     "of a belt by 0.2 deg, a disc of 1.3 m radius by 1 to 2 deg.",
 )
 
+LOOK_AT_RECORDINGS = Real(
+    0.5, "s", "Time between looks at new recordings: a copy that is under way grows meanwhile on any disk."
+)
 LOOKS_OF_PATIENCE = Count(
-    10,
+    20,
     "-",
-    "Looks at a folder, usually one a second, for which a file that ends within a line or cannot be read is "
+    "Looks at a folder for which a file that ends within a line or cannot be read is "
     "taken for one that is still being written: programs at a rig write their buffers every few seconds.",
 )

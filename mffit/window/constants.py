@@ -5,9 +5,6 @@ from __future__ import annotations
 from tir.constant import Count, Real
 
 LOOK_AGAIN = Real(0.2, "s", "Time between looks at tyre.toml and at the progress: faster than one notices.")
-LOOK_AT_RECORDINGS = Real(
-    0.5, "s", "Time between looks at new recordings: a copy that is under way grows meanwhile on any disk."
-)
 TIME_TO_STOP = Real(
     3.0, "s", "Time in which a stopped run may remove its temporary files before it is killed."
 )

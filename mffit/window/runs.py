@@ -73,7 +73,7 @@ def carry_out(kind: str, path: Path, progress: Progress) -> dict[str, Any] | Non
             pipeline.compare(path.parent / base, out, out=out / "comparison", progress=progress)
         case "watch":
             arrivals: dict[str, Arrival] = {}
-            for last in pipeline.watch(path, once=True, every=constants.LOOK_AT_RECORDINGS):
+            for last in pipeline.watch(path, once=True):
                 arrivals |= {one.file: one for one in last.changed}
             refused = [text.arrival_line(one) for one in arrivals.values() if one.state == "refused"]
             unlisted = [one.file for one in arrivals.values() if one.sweep]

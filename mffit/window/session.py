@@ -17,13 +17,14 @@ from mffit.config import Config
 from mffit.config.loading import TYRE_TOML, checked
 from mffit.config.toml_file import tables_of
 from mffit.errors import InputError
+from mffit.fit.influences.nuisance_choice import refuse_lacking
 from mffit.output import ChangedMeanwhile, digest, save_over
-from mffit.pipeline.inputs import check_named_files, input_names
+from mffit.pipeline.inputs import check_named_files, input_names, read_points
 from mffit.recordings.disc import files_of_folder
 from mffit.sweeps import formats
 from mffit.sweeps.loading import check_excluded
 from mffit.window import constants
-from mffit.window.edits import EDITS
+from mffit.window.edits import EDITS, setting
 from mffit.window.runs import PAGES, RUNS, Run, RunOutcome, out_of
 from mffit.window.settings import settings
 
@@ -76,9 +77,9 @@ class ProjectFile:
         """The content as it is on the disk; raises as :meth:`config`."""
         return tables_of(self._bytes(), self.path, TYRE_TOML)[0]
 
-    def edit(self, change: Callable[[str], str], seen: str) -> None:
+    def edit(self, change: Callable[[str], str], seen: str, *, is_setting: bool = False) -> None:
         """Write the changed text, if the file is still the one that was ``seen`` (its digest) and the new one is a right
-        ``tyre.toml``.
+        ``tyre.toml``. A setting may also be refused because of the readings, which takes as long as reading them.
 
         Raises InputError if the file was changed by another program or window, or the new content would be refused; nothing is
         written.
@@ -94,6 +95,9 @@ class ProjectFile:
             refusal = self._refusal(after)
             if refusal is not None and str(refusal) != str(self._refusal(before)):
                 raise refusal
+            contradiction = self._contradiction(after) if is_setting and refusal is None else None
+            if contradiction is not None and self._contradiction(before) is None:
+                raise contradiction
             save_over(self.path, before, after)
         except ChangedMeanwhile as error:
             shown = self._shown.get(seen, before)
@@ -150,6 +154,15 @@ class ProjectFile:
                 lines = _of_file(_lines, config.folder / file)
                 if lines is not None:
                     check_excluded(config, file, lines)
+        except InputError as error:
+            return error
+        return None
+
+    def _contradiction(self, content: bytes) -> InputError | None:
+        """Why a build refuses a content because of its readings; None if it does not."""
+        config = self._checked(content)
+        try:
+            refuse_lacking(config, read_points(config).points)
         except InputError as error:
             return error
         return None
@@ -239,7 +252,9 @@ class Session:
             raise InputError(f'"{name}" is not a change of tyre.toml')
         with self._lock:
             try:
-                self.file.edit(lambda text: EDITS[name](text, **arguments), seen)
+                self.file.edit(
+                    lambda text: EDITS[name](text, **arguments), seen, is_setting=EDITS[name] is setting
+                )
             except TypeError:
                 raise InputError(f"{name} cannot be done with {', '.join(arguments) or 'nothing'}") from None
 

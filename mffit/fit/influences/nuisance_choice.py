@@ -86,6 +86,18 @@ class NearSolution(NamedTuple):
         return joint.left_out(joint.alike(), group)
 
 
+def refuse_lacking(config: Config, points: Points) -> None:
+    """Refuse, with InputError, an influence that [fit] demands and for which the points lack something."""
+    for nuisance in NUISANCES:
+        if nuisance.setting(config) and (lacking := nuisance.lacking(points)):
+            raise InputError(
+                f"asks for the {nuisance.name}, but {lacking}; measure it, or remove the key",
+                file=config.path,
+                line=config.line_of(f"fit.{nuisance.key}"),
+                key=f"fit.{nuisance.key}",
+            )
+
+
 def choose(config: Config, first: Fitted) -> NuisanceChoice:
     """The influences that [fit] demands, and the significant ones.
 
@@ -93,19 +105,13 @@ def choose(config: Config, first: Fitted) -> NuisanceChoice:
     and stiffness have a random effect per sweep, so that scatter between sweeps is not mistaken for an influence.
     """
     points = first.problem.points
+    refuse_lacking(config, points)
     verdicts: dict[str, Verdict] = {}
     demanded, open_ = [], []
     for nuisance in NUISANCES:
         setting, lacking = nuisance.setting(config), nuisance.lacking(points)
         if setting is False:
             verdicts[nuisance.id] = Verdict(nuisance, False, _said(config, nuisance))
-        elif lacking and setting:
-            raise InputError(
-                f"asks for the {nuisance.name}, but {lacking}; measure it, or remove the key",
-                file=config.path,
-                line=config.line_of(f"fit.{nuisance.key}"),
-                key=f"fit.{nuisance.key}",
-            )
         elif lacking:
             verdicts[nuisance.id] = Verdict(nuisance, False, lacking)
         elif setting:

@@ -276,6 +276,35 @@ def test_a_file_that_a_build_refuses_is_not_named_in_tyre_toml(client, session, 
     assert session.file.path.read_bytes() == before
 
 
+@pytest.mark.parametrize(
+    ("table", "key", "value", "sentence"),
+    [
+        ("rig", "axes", '"sae"', "rises with gamma_deg"),
+        ("fit", "sense", '"lag"', "asks for the lag"),
+        ("fit", "temperature", "true", "asks for the tyre temperature"),
+    ],
+)
+def test_a_setting_that_the_readings_contradict_is_not_saved(client, session, table, key, value, sentence):
+    before = session.file.path.read_bytes()
+    answer = edit(client, session, "setting", table=table, key=key, value=value)
+    assert (answer.status_code, answer.json()["key"]) == (422, f"{table}.{key}")
+    assert sentence in answer.json()["error"]
+    assert session.file.path.read_bytes() == before
+
+
+def test_two_wrong_settings_can_be_corrected_one_after_the_other(client, session):
+    path = session.file.path
+    right = path.read_text(encoding="utf-8")
+    assert "[fit]\n" in right
+    wrong = right.replace("[rig]\n", '[rig]\naxes = "sae"\n').replace(
+        "[fit]\n", "[fit]\ntemperature = true\n"
+    )
+    path.write_text(wrong, encoding="utf-8")
+    for table, key in (("rig", "axes"), ("fit", "temperature")):
+        assert edit(client, session, "setting", table=table, key=key, value="").status_code == 200
+    assert path.read_text(encoding="utf-8") == right
+
+
 def test_a_project_that_a_build_refuses_already_can_be_changed(client, session):
     path = session.file.path
     named = re.sub("base = .*", "base = 'nothere.tir'", path.read_text())
