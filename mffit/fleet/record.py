@@ -137,10 +137,11 @@ def scatter_of(*kinds: Sequence[Quantity]) -> FleetScatter:
     n, squares, chi2 = 0, 0.0, 0.0
     for found in kinds:
         values, u = np.array([q.value for q in found]), np.array([q.u for q in found])
-        weight = 1.0 / np.maximum(u, 1e-12 * np.abs(values) + 1e-300) ** 2
-        apart = values - np.average(values, weights=weight)
+        rounding = 1e-12 * np.abs(values) + 1e-300
+        weight = 1.0 / np.maximum(u, rounding) ** 2
+        apart, off = values - np.average(values, weights=weight), values - values.mean()
         n += len(found)
-        squares += float(np.sum((values - values.mean()) ** 2))
+        squares += float(np.sum(off[np.abs(off) > rounding] ** 2))
         chi2 += float(np.sum(weight * apart**2))
     free, every = n - len(kinds), [q for found in kinds for q in found]
     return FleetScatter(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,7 @@ from mffit.prediction.road import lesser
 from mffit.quantities import DIRECT, KEYS, OF_ROAD
 from mffit.rig_errors import BESIDE, DECLARED, OF_RUN, error_of, number_of
 from mffit.rounding import AtLeast
+from mffit.sheets import file_of, sheet_of
 from tir import Quantity, Tyre
 
 RESULT, RESOLVED, INFORMATION = "result.json", "resolved.toml", "information.json"
@@ -47,6 +48,8 @@ class Specimen:
     in_doubt: tuple[str, ...] = ()  #: points that the engineer should check
     epsilon_direct: Quantity | None = None  #: eps_gamma of the direct method
     setups: tuple[str, ...] = ()  #: names of the set-ups that its sweeps declare
+    readings: frozenset[tuple[str, ...]] = frozenset()
+    """Of each recording the digest of its file, the sheet, and the lines that are left out."""
     on_road: Mapping[str, Quantity] = field(default_factory=dict)
     """Peaks on the road, of the lesser side, by their keys in ``mffit.quantities.OF_ROAD``."""
     without_spin: Quantity | None = None  #: cornering stiffness on a straight path, of a build on a disc
@@ -183,11 +186,20 @@ def read(folder: str | Path) -> Specimen:
             without_spin=_stated(spin, KEYS["C_alpha_straight"], "N/rad") if on_disc else None,
             size="".join(result["tyre"].get("size", "").split()).strip("-"),
             setups=tuple(dict.fromkeys(s["setup"] for s in resolved["sweep"] if "setup" in s)),
+            readings=frozenset(_readings(resolved, result["made"]["inputs"])),
         )
     except (OSError, LookupError, TypeError, ValueError, AttributeError, StopIteration):
         raise InputError(
             "is incomplete, or not written by `mffit build`; build this tyre again", file=folder
         ) from None
+
+
+def _readings(resolved: Mapping[str, Any], digests: Mapping[str, str]) -> Iterator[tuple[str, ...]]:
+    """:attr:`Specimen.readings`; the resolved configuration names files from the folder of the results, the digests do not."""
+    by_name = {Path(name).name: digest for name, digest in digests.items()}
+    for name in (sweep["file"] for sweep in resolved["sweep"]):
+        out = [one["lines"] for one in resolved["fit"].get("exclude", ()) if one["file"] == name]
+        yield (by_name.get(file_of(name).name, name), sheet_of(name), *out)
 
 
 def _stated(spin: Mapping[str, Any], key: str, unit: str = "-") -> Quantity | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 
 from scipy.special import ndtri
@@ -9,7 +10,7 @@ from scipy.special import ndtri
 from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.fleet import Hierarchy, Row, Specimen, kinds_of
 from mffit.rig_errors import words_of
-from tir.errors import listed
+from tir.errors import counted, listed
 
 
 def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
@@ -17,6 +18,7 @@ def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[s
     far = _far_from_declared(rigs)
     limit = _surprising(sum(len(row.strain) for row in rows))
     return [
+        *_counted_twice(rows),
         *_unlike(rows, rigs),
         *_several_rigs(rigs),
         *(note for row in rows for note in _outlying(row, far, limit)),
@@ -50,6 +52,17 @@ def note_on_sharing(specimens: Sequence[Specimen], rig_of: Sequence[int]) -> lis
 def _shared_setups(one: Specimen, others: Sequence[Specimen]) -> set[str]:
     """Names of the set-ups of a build that others of the same named rig have too."""
     return {name for other in others for name in other.setups if one.rig.get("name") and name in one.setups}
+
+
+def _counted_twice(rows: Sequence[Row]) -> list[str]:
+    """Pairs of builds that share recordings."""
+    builds = [row.specimen for row in rows]
+    return [
+        f"{one.name} and {other.name} have {counted(len(same), 'recording')} in common: the joint estimate counts their "
+        "readings twice, and what they have in common is no evidence that tyres are alike. Leave one of them out."
+        for one, other in itertools.combinations(builds, 2)
+        if (same := one.readings & other.readings)
+    ]
 
 
 def _far_from_declared(rigs: Sequence[Hierarchy | None]) -> dict[str, float]:

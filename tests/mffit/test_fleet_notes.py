@@ -20,13 +20,23 @@ def rig(F0_N=0.0):
     )  # fmt: skip
 
 
-def row(name="a", load=1400.0, **strain):
-    specimen = SimpleNamespace(name=name, conditions=(load, 250e3), size="120/70ZR17")
+def row(name="a", load=1400.0, readings=(), **strain):
+    specimen = SimpleNamespace(
+        name=name, conditions=(load, 250e3), size="120/70ZR17", readings=frozenset(readings)
+    )
     return SimpleNamespace(specimen=specimen, strain=strain)
 
 
 def test_a_fleet_that_agrees_has_no_notes():
     assert fleet_notes([row(F0_N=2.0, gamma_0_deg=-2.0), row("b")], [rig(F0_N=20.0)]) == []
+
+
+def test_builds_that_share_recordings_are_named():
+    rows = [row(readings=["1", "2", "3"]), row("b", readings=["4"]), row("c", readings=["3", "2"])]
+    (note,) = fleet_notes(rows, [rig()])
+    assert note.startswith(
+        "a and c have 2 recordings in common: the joint estimate counts their readings twice"
+    )
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
