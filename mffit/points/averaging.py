@@ -41,12 +41,17 @@ class Means(NamedTuple):
 
 
 def means(
-    sweep: Sweep, phi_t: float, stretches: Sequence[Stretch], labels: Sequence[str], faulty: np.ndarray
+    sweep: Sweep,
+    phi_t: float,
+    stretches: Sequence[Stretch],
+    labels: Sequence[str],
+    faulty: np.ndarray,
+    radius: float,
 ) -> Means:
     """Points: means over plateaus, with estimated standard errors if the file states none, and over short blocks of sweeps.
 
     ``phi_t`` is the turn slip of the path [1/m]; ``labels`` name the sweep of each stretch; samples of the mask ``faulty`` (n,)
-    are left out.
+    are left out; ``radius`` is that of the wheel [m].
     """
     used = np.zeros(len(sweep), dtype=bool)
     if not stretches:
@@ -54,7 +59,9 @@ def means(
     kept, sizes = [], []
     for stretch in stretches:
         rows = stretch.begin + np.flatnonzero(~faulty[stretch.begin : stretch.end])
-        first, usual = (np.zeros(1, dtype=int), 0) if stretch.kind == PLATEAU else _blocks(sweep, rows)
+        first, usual = (
+            (np.zeros(1, dtype=int), 0.0) if stretch.kind == PLATEAU else _blocks(sweep, rows, radius)
+        )
         counts = np.diff(np.r_[first, len(rows)])
         enough = 2 * counts >= usual  # at least half of a block's samples are sound
         kept.append(rows[np.repeat(enough, counts)])
@@ -99,8 +106,11 @@ def _errors(
     return np.where(np.isfinite(stated), stated, np.where(errors > 0.0, errors, np.nan))
 
 
-def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:
-    """First row of every block to average, and the usual number of samples in a block."""
+def _blocks(sweep: Sweep, rows: np.ndarray, radius: float) -> tuple[np.ndarray, float]:
+    """First row of every block to average, and the usual number of samples in a block.
+
+    A wheel that is not round makes a ripple, which a mean over whole turns does not contain.
+    """
     time = sweep.time[rows]
     interval = float(np.median(np.diff(time))) if len(rows) > 1 else constants.AVERAGED_TIME
     step = float(constants.AVERAGED_TIME)
@@ -111,9 +121,19 @@ def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:
         moved = float(np.median(change)) / interval if len(change) else 0.0
         if moved > 0.0:
             step = min(step, most / moved)
-    size = max(1, round(step / interval))
+    size = float(max(1, round(step / interval)))
+    turn = _turn(sweep, rows, radius)
+    if constants.RANGE_OF_A_TURN * step > turn:  # False without a turn
+        size = max(1, round(step / turn)) * turn / interval
     block = np.floor((time - time[0]) / (size * interval) + 1e-6)
     return np.r_[0, np.flatnonzero(np.diff(block)) + 1], size
+
+
+def _turn(sweep: Sweep, rows: np.ndarray, radius: float) -> float:
+    """Time of one turn of the wheel [s], by its speed if measured, else by its ``radius`` [m]; not finite at a standstill."""
+    turns = np.abs(sweep.omega[rows])
+    turning = float(np.median(turns if np.any(turns > 0.0) else sweep.V[rows] / radius))
+    return 2.0 * np.pi / turning if turning > 0.0 else np.nan
 
 
 def _mean(values: np.ndarray, rows: np.ndarray, first: np.ndarray) -> np.ndarray:

@@ -79,6 +79,12 @@ LARGEST_ORDER_OF_NOISE = Count(
     4, "-", "Autoregressive order: two for noise, two for a ripple such as once per revolution."
 )
 AVERAGED_TIME = Real(0.1, "s", "Averaging time of a moving sweep, and shortest gap in time.")
+RANGE_OF_A_TURN = Real(
+    2.0,
+    "-",
+    "One turn of the wheel over the usual averaging time up to which means are over whole turns: within it a curve over slip "
+    "bends by 0.4 % of its peak at most.",
+)
 NEAR_ZERO = Real(0.25, "-", "Fx over the load below which its curve over slip is nearly straight.")
 
 # Files under like conditions

@@ -76,7 +76,8 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     found, of_slip = _loaded(config, continuous)
     series = list(zip(found.sweeps, _as_recorded(config, found.sweeps, continuous), strict=True))
     scale = scale_of([settings_of(whole or one) for one, whole in series if one.is_series])
-    reduced = [reduce(one, phi_t[one.file], scale, whole) for one, whole in series]
+    radius = config.tyre.unloaded_radius
+    reduced = [reduce(one, phi_t[one.file], scale, whole, radius) for one, whole in series]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
     if not (config.rig.on_disc or continuous):
         points = points.replace(continuous=False)

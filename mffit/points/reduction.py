@@ -31,12 +31,18 @@ class Reduced(NamedTuple):
     ranges: Ranges = MappingProxyType({})  #: of the swept settings of a recording, without faulty samples
 
 
-def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None, whole: Sweep | None = None) -> Reduced:
+def reduce(
+    sweep: Sweep,
+    phi_t: float,
+    scale: Scale | None = None,
+    whole: Sweep | None = None,
+    radius: float = float("nan"),
+) -> Reduced:
     """The points of one sweep: means over plateaus and, where an angle keeps moving, over short times, marked ``continuous``.
 
     Every moving stretch is a sweep of its own. ``phi_t`` is the turn slip of the path [1/m]; ``scale`` is the usual size of the
     settings in all series of the campaign, to judge changes (None: that of this series); ``whole`` is the series with the lines
-    that are left out by hand (None: no line is, or one of them cannot be read).
+    that are left out by hand (None: no line is, or one of them cannot be read); ``radius`` is that of the wheel [m].
 
     Raises InputError if the time of a series does not rise.
     """
@@ -54,7 +60,8 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None, whole: Sweep 
     tried = _without_faulty_plateaus(chosen(sweep, wrong, scale, whole), wrong, faulty)
     labels = _labels(sweep, tried)
     giving = [s for kind in (PLATEAU, SWEEP) for s in tried if s.kind == kind and not s.dropped]
-    found = averaging.means(sweep, phi_t, giving, [labels[stretch] for stretch in giving], faulty)
+    named = [labels[stretch] for stretch in giving]
+    found = averaging.means(sweep, phi_t, giving, named, faulty, radius)
     number = dict(zip(giving, found.counts, strict=True))
     notes = tuple(remarks.note(sweep, s, labels[s], number.get(s, 0)) for s in tried)
     return Reduced(

@@ -91,11 +91,12 @@ def test_slip_from_speeds_is_zero_where_the_force_is(read):
 
 
 def test_a_fast_sweep_is_averaged_over_no_more_of_slip_than_of_sideslip():
-    """At a slip of 0.35 per second a tenth of a second would be 0.035; at 0.05 per second it is the tenth of a second."""
-    for rate, samples in ((0.35, 2), (0.05, 10)):
+    """At a slip of 0.35 per second a tenth of a second would be 0.035; at 0.05 per second it is a turn of the wheel, if known."""
+    for rate, radius, samples in ((0.35, 0.225, 2.0), (0.05, 0.225, 12.85), (0.05, np.nan, 10.0)):
         time = np.arange(200) / 100.0
-        some = SimpleNamespace(time=time, alpha=0.0 * time, gamma=0.0 * time, kappa=rate * time)
-        assert _blocks(some, np.arange(200))[1] == samples
+        settings = {"alpha": 0.0 * time, "gamma": 0.0 * time, "kappa": rate * time}
+        some = SimpleNamespace(time=time, omega=np.nan * time, V=np.full(200, 11.0), **settings)
+        assert _blocks(some, np.arange(200), radius)[1] == pytest.approx(samples, abs=0.01)
 
 
 def test_signs_and_units_of_the_channels_are_those_of_iso_w(read):
