@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from mffit.diagnosis.bumps import _parts
 from mffit.diagnosis.conditions import by_condition
-from mffit.diagnosis.where import _cut
+from mffit.diagnosis.where import _cut, bins
 from mffit.points import make_points
 
 SWEEP = np.radians(np.linspace(-9.0, 9.0, 31))
@@ -70,10 +69,9 @@ def test_samples_between_two_loads_do_not_join_their_conditions():
 
 def test_bumps_are_sought_within_each_load_despite_samples_between_them():
     Fz = np.concatenate([np.full(200, 900.0), np.linspace(900.0, 1500.0, 12), np.full(200, 1500.0)])
-    masks = _parts(make_points(0.0, 0.0, Fz, p=250e3, V=6.0, phi_t=-0.76))
-    loads = [(region["Fz_N"], mask.sum()) for region, mask in masks if "Fz_N" in region]
+    loads = bins(make_points(0.0, 0.0, Fz, p=250e3, V=6.0, phi_t=-0.76))["Fz_N"]
     assert len(loads) == 2
-    assert sum(number for _, number in loads) == len(Fz)
+    assert sum(mask.sum() for _, mask in loads) == len(Fz)
 
 
 def test_regions_follow_the_levels_despite_samples_between_them():
