@@ -175,7 +175,21 @@ def test_a_number_beyond_its_bound_is_no_explanation():
     play = effect("a")
     play = replace(play, free=(Free("a", 1.0, lower=0.0),))
     assert LinearSets(problem, problem.null, [effect("a")]).best(()) == (0,)
-    assert LinearSets(problem, problem.null, [play]).best(()) == ()
+    sets = LinearSets(problem, problem.null, [play, effect("b")])
+    assert sets.best(()) == ()
+    assert dict(sets.gains(()))[play] == 0.0
+
+
+@pytest.mark.parametrize("before", ["", "b"])
+def test_what_an_effect_adds_is_the_rise_of_the_density(before):
+    problem, effects = drawn(3, 5), [effect(name, prior=0.3) for name in LETTERS[:5]]
+    sets = LinearSets(problem, problem.null, effects)
+    found = sets.gains(sets.of([one for one in effects if one.id in before]))
+    assert [gain for _, gain in found] == sorted((gain for _, gain in found), reverse=True)
+    assert {one.id for one, _ in found} == set(LETTERS[:5]) - set(before)
+    for one, gain in found:
+        more = problem.density([*before, one.id]) - problem.density([*before])
+        assert gain == pytest.approx(max(more, 0.0), abs=1e-6)
 
 
 def test_the_search_ends_if_a_set_looks_different_at_every_visit():
