@@ -22,6 +22,7 @@ from mffit.diagnosis.repair import Confirmed, Repair
 from mffit.diagnosis.rest import Answer, Rest
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis, apart
 from mffit.diagnosis.search import Search
+from mffit.diagnosis.tails import weights
 from mffit.diagnosis.ties import separation
 from mffit.diagnosis.validation import Gap, gap, validate
 from mffit.diagnosis.where import Region, where
@@ -140,12 +141,13 @@ def _bump_region(bump: Bump) -> Region:
 
 
 def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier, ...]:
-    """The readings far from the explained model, in channels with heavy tails."""
+    """The readings with nearly zero weight that are also far from the explained model."""
     if noise.weight is None:
         return ()
     usual, away = noise.u * np.sqrt(noise.weight), np.abs(noise.measured(points) - after)
-    far = (noise.weight < 1.0) & (away > constants.DIAGNOSED_OUTLIER_RATIO * usual)
-    used = np.where(far, np.inf, usual)
+    ratio = np.full(len(points), float(constants.DIAGNOSED_OUTLIER_RATIO))
+    least = np.concatenate([weights(ratio, one.tails, 1.0) for one in noise.scatter.values()])
+    used = np.where((noise.weight < least) & (away > ratio[0] * usual), np.inf, usual)
     return outliers(points, *(Readings.split(rows, noise.channels) for rows in (usual, used, after)))
 
 
