@@ -43,7 +43,7 @@ export function showChosen() {
   const about = [
     ...channels.map(name => [label(RESIDUAL + name), i => written(columns[name][i] - own[name][i])]),
     ...named.filter(name => chosen.length === 1 || axisKnown(name)).map(name =>
-      [`${label(name)}, as read`, i => trimmed(written(shownIn(name, (columns.read[name] || columns[name])[i])))]),
+      [label(name), i => trimmed(written(shownIn(name, (columns.read[name] || columns[name])[i])))]),
     ...(shown.some(i => left[i]) ? [["left out", i => left[i] ? whyLeftOut(i) || "yes" : ""]] : []),
   ];
   byId("chosen-table").tHead.replaceChildren(...chosen.length === 1 ? [] : [row([element("th", "", "point"),

@@ -85,6 +85,11 @@ const filesPart = {
     drawnFor = wanted;
     pointer = null;
     tyres.forEach(fillRow);
+    byId("panels").classList.toggle("difference", isDifference());
+    for (const {canvas, x} of panels) canvas.closest("figure").hidden = isDifference() && !controls[x];
+    byId("condition").textContent = content.controls.map(({name}) =>
+      `${content.quantities[name].word} ${withUnit(name, inUnit(name, now[name]))}`).join(", ") +
+      (isDifference() ? `; pictures show the difference from ${tyres[0].name}` : "");
   },
   scene(panel) {
     if (panel.drawnFor !== drawnFor) {
@@ -115,15 +120,6 @@ const filesPart = {
       if (Number.isFinite(y)) disc(pen, place.X(x), place.Y(y), 4, theme.colours[tyre.number]);
     }
   },
-  above() {},
-  told() {
-    const minus = isDifference() ? `; pictures show the difference from ${tyres[0].name}` : "";
-    byId("panels").classList.toggle("difference", isDifference());
-    for (const {canvas, x} of panels) canvas.closest("figure").hidden = isDifference() && !controls[x];
-    byId("condition").textContent = content.controls.map(({name}) =>
-      `${content.quantities[name].word} ${withUnit(name, inUnit(name, now[name]))}`).join(", ") + minus;
-  },
-  recolour() {},
   frame(panel, figure, caption, keys) {
     const x = content.quantities[panel.x], y = content.quantities[panel.y], letter = symbol(y),
       minus = panel.sign < 0 ? "−" : "";
@@ -269,7 +265,7 @@ export function showFiles() {
   byId("reset").addEventListener("click", () => { start({}); settle(); });
   const dashed = tyre => tyre.estimated.length || Object.values(tyre.ranges).some(range => range.tested);
   byId("key-tested").hidden = !tyres.some(dashed);
-  if (matchMedia("(max-width: 820px)").matches) byId("controls").open = false;
+  if (matchMedia("(max-width: 820px)").matches && innerWidth) byId("controls").open = false;  // 0: not laid out yet
   start(recalled());
   retheme();
 }

@@ -1,7 +1,7 @@
 // The pictures of a page: their frames, what pointer, fingers and keys do in them, zoom, and pictures as files. What
 // they show comes from the part of the page that began, that of files or that of a project. It has
 //   frame(panel, figure, caption, keys)  fills the frame of a new picture; sets panel.words, the texts of its axes
-//   compute(), told(), recolour()  before and after pictures are drawn, and after a change of the colours
+//   compute()  before pictures are drawn; and told() after that, recolour() after a change of the colours, if needed
 //   scene(panel)  {name, box}: the name of what `still` draws, and the box of the axes
 //   still, moving, above(pen, panel, place)  draw: kept while the name stays; anew each time; not cut at the axes
 //   hover(panel, at), click(panel, at, event), choose(panel, box, event), key(panel, event)  `at` is null outside
@@ -23,13 +23,13 @@ export function begin(given) {
     for (const other of tools()) other.setAttribute("aria-pressed", pressed && other === one);
     byId("panels").classList.toggle("dragging", pressed);
   });
-  addEventListener("resize", update);
+  new ResizeObserver(frame).observe(byId("panels"));  // also from nothing, as in a frame that is laid out later
   whenPrinted(retheme);
   onThemeChange(retheme);
 }
 export function retheme() {
   readTheme();
-  part.recolour();
+  part.recolour?.();
   frame();  // at once, as paper does not wait
 }
 export function update() {
@@ -40,7 +40,7 @@ export function update() {
 export function frame() {
   part.compute();
   panels.forEach(draw);
-  part.told();
+  part.told?.();
 }
 export function remember() {
   if (location.protocol === "about:") return;  // a page in a notebook has no address
@@ -83,7 +83,7 @@ function paint(panel, pen, width, height, ratio) {
   pen.clip(frameOf(place));
   part.moving(pen, panel, place);
   pen.restore();
-  part.above(pen, panel, place);
+  part.above?.(pen, panel, place);
 }
 function limits(panel, box) {
   if (panel.view) return panel.view;

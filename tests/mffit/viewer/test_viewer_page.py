@@ -158,11 +158,14 @@ def test_curves_are_shown_as_differences_from_the_first_tyre(browser):
         figure.get_attribute("id") for figure in browser.find_elements("css selector", "figure[hidden]")
     ]
     assert hidden == [panel.key for panel in PANELS if panel.x in OUTPUTS]
+    before = lines(browser, "Fy-Fx")
+    move(browser, Fz=2600)
     assert complaints(browser) == []
     assert console_errors(browser) == []
     browser.find_element("id", "reset").click()
     drawn(browser)
     assert not browser.find_elements("css selector", "figure[hidden]")
+    assert lines(browser, "Fy-Fx") != before  # drawn again, as the condition is another
 
 
 def test_a_picture_is_drawn_where_its_curves_are(browser):
