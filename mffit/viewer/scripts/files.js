@@ -21,7 +21,8 @@ const use = () => document.querySelector("input[name=turn_slip]:checked").value;
 const isOn = tyre => use() === "file" ? tyre.turn_slip : use() === "on";
 const modelsOf = tyre => isOn(tyre) ? tyre.on : tyre.off;
 const inUnit = (name, x) => x / content.quantities[name].si;
-const withUnit = (name, x) => `${trimmed(written(x))} ${content.quantities[name].unit}`.trim();
+const withUnit = (name, x) =>
+  `${name in controls ? trimmed(written(x)) : written(x)} ${content.quantities[name].unit}`.trim();
 const isDifference = () => byId("difference").checked;  // from the first tyre, over an input
 const shownTyres = () => tyres.filter(tyre => tyre.shown);
 
@@ -129,7 +130,7 @@ const filesPart = {
       ...keys);
     figure.append(element("p", "x", [`${x.word} `, symbol(x), unitOf(x)]));
     panel.canvas.ariaLabel = `${panel.word} over ${x.word}; the arrow keys move its slider, + and - zoom, 0 shows all`;
-    panel.words = {x: named(x), y: minus + named(y)};
+    panel.words = {x: named(x), get y() { return `${isDifference() ? "Δ " : ""}${minus}${named(y)}`; }};
   },
   hover(panel, at) {
     const found = at && nearestOf(panel, at), name = panel.runs;
