@@ -4,7 +4,7 @@ const RATIO_OF_PAPER = 3, EDGE = 3, FOLD = 58, DIGIT = 8;
 export let theme = {};
 
 // On paper pictures have the size, the colours and the sharpness of paper: CSS knows them by the class "paper".
-export const onPaper = () => document.documentElement.classList.contains("paper");
+const onPaper = () => document.documentElement.classList.contains("paper");
 export function whenPrinted(draw) {
   for (const event of ["beforeprint", "afterprint"]) addEventListener(event, () => {
     document.documentElement.classList.toggle("paper", event === "beforeprint");
@@ -21,7 +21,7 @@ export function readTheme() {
   theme.colours = [0, 1, 2, 3, 4, 5, 6, 7].map(i => of(`c${i}`));
   theme.font = `11px ${getComputedStyle(document.body).fontFamily}`;
 }
-export function ticks(low, high, most) {
+function ticks(low, high, most) {
   const raw = (high - low) / most, power = 10 ** Math.floor(Math.log10(raw));
   const step = power * [1, 2, 2.5, 5, 10].find(n => n * power >= raw * (1 - 1e-9));
   const found = [], places = -Math.floor(Math.log10(step) + 1e-9) + (Math.abs(step / power - 2.5) < 1e-9 ? 1 : 0);

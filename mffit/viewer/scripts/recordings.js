@@ -109,12 +109,12 @@ function show() {
 }
 function tyreAndRig(tyre, rig, disc) {
   field(tyre, "name", "name", {value: table.tyre.name, required: true});
-  field(tyre, "size", "size", {value: table.tyre.size ?? ""});
+  field(tyre, "size", "size", {value: table.tyre.size ?? "", placeholder: "optional"});
   const any = {type: "number", step: "any", required: true, min: 0};
   field(tyre, "unloaded radius [m]", "unloaded_radius", any);
   field(tyre, "nominal load [N]", "nominal_load", any);
   field(tyre, "nominal pressure [kPa]", "nominal_pressure", {...any, value: table.tyre.nominal_pressure ?? ""});
-  const optional = {type: "number", step: "any", min: 0};
+  const optional = {type: "number", step: "any", min: 0, placeholder: "optional"};
   for (const [word, name] of [["nominal speed [m/s]", "nominal_speed"], ["width [m]", "width"],
     ["rim radius [m]", "rim_radius"]])
     field(tyre, word, name, {...optional, value: table.tyre[name] ?? ""});
@@ -124,7 +124,7 @@ function tyreAndRig(tyre, rig, disc) {
   type.required = true;
   select(rig, "axes of the readings", "axes", ["iso", "sae",
     "adapted-sae"].map(x => [x, table.axes.includes(x) ? `${x} (agrees with the signs)` : x]), table.axes[0] || "iso");
-  const radius = field(rig, "path radius [m]", "path_radius", optional);
+  const radius = field(rig, "path radius [m]", "path_radius", {...optional, placeholder: ""});
   const centre = select(rig, "disc centre, seen rolling forwards", "path_centre", ["left", "right"].map(x => [x, x]),
     "left");
   const curved = () => {

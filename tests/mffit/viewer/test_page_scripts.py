@@ -48,6 +48,8 @@ RULES: dict[str, Any] = {
 """``0.0 * PEY5`` is what the generated code of the equations has where an input is zero."""
 
 
+IMPORTED = re.compile(r"^import \{([^}]*)\}", re.MULTILINE)
+EXPORTED = re.compile(r"^export (?:async )?(?:function|const|let) (\w+)", re.MULTILINE)
 MODULES = [path for path in files("mffit.viewer").joinpath("scripts").iterdir() if path.name.endswith(".js")]
 
 
@@ -392,6 +394,16 @@ def test_lines_mean_the_same_in_a_page_and_in_python(engine, data):
         assert entry["file"] == name
         assert entry["lines"] == ranges_text(line_ranges(", ".join(f"{line[i]}-{last[i]}" for i in chosen)))
     engine("markLeftOut([])")
+
+
+def test_what_a_module_exports_another_one_imports():
+    texts = [path.read_text(encoding="utf-8") for path in MODULES]
+    imported = {
+        name.strip() for text in texts for names in IMPORTED.findall(text) for name in names.split(",")
+    }
+    exported = {name for text in texts for name in EXPORTED.findall(text)}
+    assert exported - imported == set()
+    assert len(exported) > 50
 
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda path: path.name)
