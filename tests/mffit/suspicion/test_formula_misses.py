@@ -82,10 +82,8 @@ def moved(column: str, by: float) -> Change:
 @pytest.mark.parametrize(
     ("file", "change", "looks"),
     [
-        ("coupled_1700_4", scaled("Fy_N", 1.10), ""),
         ("sideslip_1700", scaled("Fz_N", 1.08), ""),
         ("coupled_1700_4", moved("alpha_deg", 0.15), "a sideslip axis that is"),
-        ("sideslip_1700", moved("Fy_N", 30.0), "a zero offset of"),
     ],
 )
 def test_a_sweep_with_an_error_of_its_own_is_named_in_such_a_tyre(tmp_path, file, change, looks):
@@ -110,17 +108,16 @@ def test_five_per_cent_of_the_force_of_the_only_upright_sweep_at_a_load_are_foun
     assert "sideslip_1400 contradicts the other sweeps and looks like a gain of 1.05" in result.reasons[0]
 
 
-@pytest.mark.parametrize("file", ["sideslip_1400", "camber_1400"])
-def test_in_a_tyre_of_the_formula_such_a_sweep_is_named_with_what_is_wrong(tmp_path, file):
+def test_in_a_tyre_of_the_formula_such_a_sweep_is_named_with_what_is_wrong(tmp_path):
     """27 N is nine times the noise of a point."""
     simulated(flat(), tmp_path)
-    table = pd.read_csv(tmp_path / f"{file}.csv")
-    table.assign(Fy_N=table["Fy_N"] + 27.0).to_csv(tmp_path / f"{file}.csv", index=False)
+    table = pd.read_csv(tmp_path / "camber_1400.csv")
+    table.assign(Fy_N=table["Fy_N"] + 27.0).to_csv(tmp_path / "camber_1400.csv", index=False)
     result = mffit.build(tmp_path / "tyre.toml", with_report=False)
     found = result.remains.sweep
     assert not result.trusted
     assert found is not None
-    assert found.name == file
+    assert found.name == "camber_1400"
     assert re.match(r"a zero offset of \+2[4-9]", found.looks)
     assert found.looks in result.reasons[0]
 

@@ -105,15 +105,14 @@ def test_without_a_stated_noise_the_scatter_is_estimated(unstated, tmp_path):
         assert u == pytest.approx(reference, rel=0.25), name
 
 
-@pytest.mark.parametrize("file", ["sideslip_2100.csv", "coupled.csv"])
-def test_one_bad_file_without_a_stated_noise_is_not_hidden_by_the_others(tmp_path, file):
+def test_one_bad_file_without_a_stated_noise_is_not_hidden_by_the_others(tmp_path):
     """Its side force is read a tenth too large: 90 N, where all other files miss by 3 N."""
     result = mffit.build(
-        campaign(tmp_path, lambda table: silent(table).assign(Fy_N=1.1 * table["Fy_N"]), file)
+        campaign(tmp_path, lambda table: silent(table).assign(Fy_N=1.1 * table["Fy_N"]), "coupled.csv")
     )
     assert result.trust.over_noise["Fy"] < 1.2  # of the others
     assert not result.trusted
-    assert Path(file).stem in result.reasons[0]
+    assert "coupled" in result.reasons[0]
 
 
 def test_files_without_a_stated_noise_are_no_reason_by_themselves(few, unstated):
