@@ -1,4 +1,4 @@
-"""With wrong noise, inexact models and effects outside the library, the right effect is named, or none.
+"""With wrong noise and inexact models the right effect is named, or none.
 
 A case of each sort; ``tests/studies/diagnosis_study.py --hard`` runs whole sets.
 """
@@ -6,7 +6,7 @@ A case of each sort; ``tests/studies/diagnosis_study.py --hard`` runs whole sets
 from __future__ import annotations
 
 import pytest
-from blind_hard import hard, smooth
+from blind_hard import hard
 from blind_scores import judge
 
 SEED = 77
@@ -40,9 +40,3 @@ def test_correlated_errors_are_not_an_effect():
     verdict = judge(case("correlated-none-large-227047202"))
     assert not verdict.named
     assert not verdict.unexplained
-
-
-def test_a_smooth_effect_outside_the_library_stays_unexplained():
-    verdict = judge(list(smooth(SEED))[2].draw())
-    assert not verdict.named
-    assert verdict.unexplained
