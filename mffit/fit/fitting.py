@@ -12,7 +12,7 @@ import numpy as np
 
 from mffit.config import Config, axis_signs
 from mffit.config.loading import as_declared
-from mffit.fit import agreement
+from mffit.fit import agreement, constants
 from mffit.fit.bands import bands
 from mffit.fit.beginning import begin
 from mffit.fit.coefficients import of_file
@@ -176,7 +176,8 @@ def _fitted_and_judged(
 
     def refit(without: np.ndarray) -> FittedModel:
         others = np.setdiff1d(np.arange(len(problem.points)), without)
-        fitted = refitted(found.full, replace(found.stated, simulation=found.full.simulation).select(others))
+        here = replace(found.stated, simulation=found.full.simulation).select(others)
+        fitted = refitted(found.full, here, tolerance=constants.REFIT_TOLERANCE)
         sigma = {name: weights.copy() for name, weights in found.full.problem.sigma.items()}
         for name, weights in sigma.items():
             weights[without] = found.stated.sigma[name][without]

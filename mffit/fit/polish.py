@@ -46,7 +46,7 @@ def first_fit(problem: FitProblem, start: Mapping[str, float], plan: FitPlan) ->
     best = part.with_values(min(ends, key=lambda end: end.cost).values)
     numbers = plan.numbers(best)
     near = solve(best.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
-    return polish(problem.with_values(near.values), plan)
+    return polish(_approached(problem.with_values(near.values), plan), plan)
 
 
 def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
@@ -55,9 +55,8 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     Weights are balanced between the channels and reduced far from the model. ``stated`` is near the solution and has the stated
     weights; readings without a stated uncertainty are assigned the scatter of their misfit.
     """
-    near = _approached(stated, plan)
     expected = {name: x for name, x in plan.expected.items() if name not in plan.hand.names}
-    near = near.with_values(with_expected_signs(near.simulation.values, expected))
+    near = stated.with_values(with_expected_signs(stated.simulation.values, expected))
     problem = near.with_noise_of_misfit().reweighted()
     return _fitted(problem, plan.numbers(problem), plan)
 
@@ -85,8 +84,8 @@ def with_known_zeros(
     return polish(here.with_values(values), plan), plan
 
 
-def refitted(fitted: Fitted, stated: FitProblem) -> Fitted:
-    """The same numbers fitted to other points, starting at the values of ``fitted``.
+def refitted(fitted: Fitted, stated: FitProblem, tolerance: float = POLISH_TOLERANCE) -> Fitted:
+    """The same numbers fitted to other points, starting at the values of ``fitted``; ``tolerance`` as of :func:`solve`.
 
     Weights are computed twice, because the first solution may be far from those values.
     """
@@ -94,13 +93,19 @@ def refitted(fitted: Fitted, stated: FitProblem) -> Fitted:
     weighted = here.with_noise_of_misfit().reweighted()
     numbers = weighted.starting_here(fitted.numbers)
     near = solve(weighted.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
-    return _fitted(here.with_values(near.values).with_noise_of_misfit().reweighted(), numbers, fitted)
+    here = here.with_values(near.values).with_noise_of_misfit().reweighted()
+    return _fitted(here, numbers, fitted, tolerance)
 
 
-def _fitted(problem: FitProblem, numbers: Sequence[FreeNumber], given: FitPlan | Fitted) -> Fitted:
+def _fitted(
+    problem: FitProblem,
+    numbers: Sequence[FreeNumber],
+    given: FitPlan | Fitted,
+    tolerance: float = POLISH_TOLERANCE,
+) -> Fitted:
     """The fit of some numbers, started at the values of ``problem``; ``given`` names the held numbers."""
     numbers = problem.starting_here(numbers)
-    solution = solve(problem.free([n.name for n in numbers]), numbers)
+    solution = solve(problem.free([n.name for n in numbers]), numbers, tolerance=tolerance)
     problem = problem.with_values(solution.values)
     posterior = told_by_weights(problem, numbers, {**given.held, **given.held_rig})
     known = {name: problem.value(name) for name in given.held_rig}

@@ -123,11 +123,10 @@ class FitProblem(ReadOnlyArrays):
         readings = self.readings() if readings is None else readings
         out = {}
         for name, sigma in self.sigma.items():
-            measured = np.nan_to_num(self.points.channel(name))
             model = readings[name]
             if name == "Mx" and "Fy" in self.sigma:
-                model, _ = self._at_second_hand((), np.arange(len(self.points)), readings)
-            out[name] = np.where(self._used(name), (model - measured) / sigma, 0.0)
+                model, _ = self._at_second_hand((), slice(None), readings)
+            out[name] = np.where(self._used(name), (model - self.points.channel(name)) / sigma, 0.0)
         return out
 
     def free(self, names: Sequence[str]) -> LeastSquaresProblem:
@@ -163,18 +162,22 @@ class FitProblem(ReadOnlyArrays):
                 used = np.isfinite(u) & np.isfinite(measured)
                 model, slope = readings[name], by_channel[name]
                 if name == "Mx" and "Fy" in self.sigma:
-                    model, slope = self._at_second_hand(names, rows, readings, by_channel)
-                data[k] = np.where(used, (model - np.nan_to_num(measured)) / u, 0.0)
+                    model, slope = self._at_second_hand(names, which, readings, by_channel)
+                data[k] = np.where(used, (model - measured) / u, 0.0)
                 np.multiply(slope.T, used / u, out=slopes[:, k])
             yield rows, data.ravel(), slopes.reshape(len(names), -1).T
 
     def _at_second_hand(
-        self, names: Sequence[str], rows: np.ndarray, readings: Readings, by_channel: Readings | None = None
+        self,
+        names: Sequence[str],
+        rows: np.ndarray | slice,
+        readings: Readings,
+        by_channel: Readings | None = None,
     ) -> tuple[np.ndarray, np.ndarray]:
         """Mx (m,) and its derivatives (m, k), with the side force as read where it has a weight."""
         part, read = self.points.select(rows, with_table=False), self._used("Fy")[rows]
-        part = part.replace(Fy=np.where(read, part.Fy, readings.Fy))
-        change, by_number, by_force = by_force_read(self.simulation, part, readings.Fy, names)
+        forces = np.where(read, part.Fy, readings.Fy), readings.Fy
+        change, by_number, by_force = by_force_read(self.simulation, part, forces, names)
         if by_channel is None:
             return readings.Mx + change, by_number
         of_Fy = (read * by_force)[:, None] * by_channel.Fy

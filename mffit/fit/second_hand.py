@@ -18,14 +18,14 @@ SIDE_FORCE, ARM, PRESSURE = "Fy", "k_p_arm_per_kPa", "p_ref_kPa"
 
 
 def by_force_read(
-    simulation: Simulation, points: Points, force: np.ndarray, names: Sequence[str]
+    simulation: Simulation, points: Points, forces: tuple[np.ndarray, np.ndarray], names: Sequence[str]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Change of Mx (n,) [Nm] if the side force is that of ``points`` and not the model's ``force`` (n,) [N].
+    """Change of Mx (n,) [Nm] by the first of two side ``forces`` (n,) [N] instead of the second, that of the model.
 
-    Also its derivatives (n, k) by the named numbers at a given ``force``, and those (n,) by the force.
+    Also its derivatives (n, k) by the named numbers at given forces, and those (n,) by the force of the model.
     """
     own = [name for name in names if name == ARM or (name in BY_NAME and BY_NAME[name].channel == "Mx")]
-    at = traced({**{name: simulation.number(name, points) for name in own}, SIDE_FORCE: force})
+    at = traced({**{name: simulation.number(name, points) for name in own}, SIDE_FORCE: forces[1]})
     values = {**simulation.values, **{name: at[name] for name in own if name != ARM}}
     reference = simulation.number(PRESSURE, points)
     if not np.isnan(reference):
@@ -34,7 +34,7 @@ def by_force_read(
         values[arm] = values[arm] + k * (1e-3 * points.p - reference)
     p = SimpleNamespace(**values)
     q = normalise.inputs(p, normalise.OperatingCondition(points.Fz, gamma=points.gamma, pressure=points.p))
-    read, model = (overturning.moment(p, q, points.Fz, Fy) for Fy in (points.Fy, at[SIDE_FORCE]))
+    read, model = (overturning.moment(p, q, points.Fz, Fy) for Fy in (forces[0], at[SIDE_FORCE]))
     by_number = np.zeros((len(points), len(names)))
     slopes = gradient(read - model, list(at.values()))
     by_number[:, [names.index(name) for name in own]] = slopes[:, :-1]

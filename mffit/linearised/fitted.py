@@ -181,7 +181,7 @@ class LinearisedChannel(ReadOnlyArrays):
 
     def gain(self, change: np.ndarray) -> tuple[float, float]:
         """Gain of log evidence by adding a known ``change`` (n,) to the model, and :attr:`proof` of the remaining model error."""
-        model = replace(self.alone.model, residual=self.alone.model.residual - change / self.unit)
+        model = self.alone.model.of(self.alone.model.residual - change / self.unit)
         terms = replace(self.alone, model=model)
         found = terms.most_probable(self.unit, self.components)
         beside = replace(self, alone=terms, components=found)

@@ -6,7 +6,7 @@ Evidence and posterior are computed from sums of products over groups, so their 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -15,6 +15,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.linalg.blas import dtrmm
 
 from mffit.linearised.gaussian import Informed
+from mffit.rig import successive
 from tir.frozen import ReadOnlyArrays
 
 ROUNDING = 1e-13
@@ -57,8 +58,9 @@ class Mixed(ReadOnlyArrays):
 
     @cached_property
     def _sums(self) -> _Sums:
-        parts = [(self.common[g], self.own[g], self.residual[g]) for g in self.groups]
-        rows = np.concatenate([np.zeros(0, dtype=int), *self.groups])
+        groups = [successive(g) for g in self.groups]
+        parts = [(self.common[g], self.own[g], self.residual[g]) for g in groups]
+        rows = successive(np.concatenate([np.zeros(0, dtype=int), *self.groups]))
         common, residual = self.common[rows], self.residual[rows]
         return _Sums(
             common=common.T @ common,
@@ -67,8 +69,18 @@ class Mixed(ReadOnlyArrays):
             own=np.array([z.T @ z for _, z, _ in parts]),
             own_pull=np.array([z.T @ r for _, z, r in parts]),
             square=float(residual @ residual),
-            readings=len(rows),
+            readings=len(residual),
         )
+
+    def of(self, residual: np.ndarray) -> Mixed:
+        """The same model of other residuals (n,), without summing the products of the columns again."""
+        other, groups = replace(self, residual=residual), [successive(g) for g in self.groups]
+        vars(other)["_sums"] = self._sums._replace(
+            pull=np.sum([self.common[g].T @ residual[g] for g in groups], axis=0),
+            own_pull=np.array([self.own[g].T @ residual[g] for g in groups]),
+            square=float(np.sum([residual[g] @ residual[g] for g in groups])),
+        )
+        return other
 
     @cached_property
     def _group_of(self) -> np.ndarray:
