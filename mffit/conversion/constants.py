@@ -42,3 +42,9 @@ WEIGHT_OF_CURVATURE_LIMIT = Real(
 CURVATURE_MARGIN = Real(
     0.005, "-", "Distance of a fitted curvature factor from 1, so that none exceeds it between the loads."
 )
+CONVERTED_TOLERANCE = Real(
+    0.01,
+    "-",
+    "Share of the sum of squares by which a step must reduce it: half a per cent of the misfit. Below, terms of which the forces "
+    "need one (QSX4 and QSX8 of PAC2002) run away together for hundreds of steps.",
+)

@@ -85,9 +85,6 @@ def held(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
 FREE: Mapping[str, Sequence[str]] = {"Fx": (), "Fy": CAMBER_FORCE, "Mz": CAMBER_MOMENT}
 """By channel, what is fitted in every file: the coefficients of camber. All others mean the same in both formulae, so that the
 upright wheel keeps its forces."""
-CLOSE_ENOUGH = 0.01
-"""Share of the sum of squares by which a step must reduce it: a hundredth is half a per cent of the misfit, and beyond it terms of
-which the forces need one (``QSX4`` and ``QSX8`` of PAC2002) run away along a valley for hundreds of steps."""
 UNBOUNDED = (-np.inf, np.inf)
 """Bound of a converted coefficient: exact forces determine it, and its factor may be tiny in the old file."""
 
@@ -111,7 +108,7 @@ class Fit(NamedTuple):
         if limits is not None:
             problem = limits.added(problem, self.names, values)
         numbers = [FreeNumber(name, float(values[name]), *bounds(name)) for name in self.names]
-        return solve(problem, numbers, tolerance=CLOSE_ENOUGH).values
+        return solve(problem, numbers, tolerance=float(constants.CONVERTED_TOLERANCE)).values
 
 
 def refit(
