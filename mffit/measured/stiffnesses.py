@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -86,32 +87,38 @@ class OddCurve(NamedTuple):
         return Secant(value, u_value)
 
     def _saturating(self, curvature: float) -> tuple[float, float, float]:
-        """Slope at zero, its standard error from ``u``, and the scatter of the points over ``u``, from a saturating curve.
+        return _saturating(*(np.asarray(one, dtype=float).tobytes() for one in self), curvature)
 
-        The curve is D sin(C atan(b - E (b - atan b))) with b = x s / (C D): odd, with slope s at zero and ceiling D.
-        """
-        x, y, u = self
-        first = np.argsort(x)[:3]
-        start = float(np.sum(x[first] * y[first]) / np.sum(x[first] ** 2))
-        top = max(float(np.max(np.abs(y))), 1e-9) * np.sign(start or 1.0)
-        numbers = [
-            FreeNumber("slope", 1.05, 0.2, 5.0),  # relative to its first estimate
-            FreeNumber("ceiling", 1.2, 0.7, 20.0),  # relative to the largest value
-            FreeNumber("C", 1.2, 0.3, 1.9, expected=1.2, spread=0.5),
-        ]
-        if curvature:
-            numbers.append(FreeNumber("E", 0.0, -6.0, 1.0, expected=0.0, spread=curvature))
 
-        def curve(at: Mapping[str, Any]) -> Any:
-            D, C = at["ceiling"] * top, at["C"]
-            b = at["slope"] * start * x / (C * D)
-            bent = at["E"] * (b - np.arctan(b)) if curvature else 0.0
-            return D * np.sin(C * np.arctan(b - bent))
+@lru_cache(maxsize=256)
+def _saturating(x: bytes, y: bytes, u: bytes, curvature: float) -> tuple[float, float, float]:
+    """Slope at zero, its standard error from ``u``, and the scatter of the points over ``u``, from a saturating curve.
 
-        found = solve(of_model(curve, [number.name for number in numbers], y, u), numbers, tolerance=1e-9)
-        scatter = math.sqrt(found.cost / max(len(x) - 3, 1))
-        error = math.sqrt(found.covariance[0, 0])
-        return found.values["slope"] * start, error * abs(start), scatter
+    The curve is D sin(C atan(b - E (b - atan b))) with b = x s / (C D): odd, with slope s at zero and ceiling D. A curve is given
+    as the bytes of its numbers: the published procedure and the measurement behind the fit ask for most curves again.
+    """
+    angle, force, error = (np.frombuffer(one) for one in (x, y, u))
+    first = np.argsort(angle)[:3]
+    start = float(np.sum(angle[first] * force[first]) / np.sum(angle[first] ** 2))
+    top = max(float(np.max(np.abs(force))), 1e-9) * np.sign(start or 1.0)
+    numbers = [
+        FreeNumber("slope", 1.05, 0.2, 5.0),  # relative to its first estimate
+        FreeNumber("ceiling", 1.2, 0.7, 20.0),  # relative to the largest value
+        FreeNumber("C", 1.2, 0.3, 1.9, expected=1.2, spread=0.5),
+    ]
+    if curvature:
+        numbers.append(FreeNumber("E", 0.0, -6.0, 1.0, expected=0.0, spread=curvature))
+
+    def curve(at: Mapping[str, Any]) -> Any:
+        D, C = at["ceiling"] * top, at["C"]
+        b = at["slope"] * start * angle / (C * D)
+        bent = at["E"] * (b - np.arctan(b)) if curvature else 0.0
+        return D * np.sin(C * np.arctan(b - bent))
+
+    found = solve(of_model(curve, [number.name for number in numbers], force, error), numbers, tolerance=1e-9)
+    scatter = math.sqrt(found.cost / max(len(angle) - 3, 1))
+    u_slope = math.sqrt(found.covariance[0, 0])
+    return found.values["slope"] * start, u_slope * abs(start), scatter
 
 
 CAMBER, BACKWARD_CAMBER = "camber stiffness", "camber stiffness backwards"
