@@ -65,6 +65,17 @@ def simulated(content: dict[str, Any], folder: Path, seed: int = 3) -> virtual_r
     return virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=seed)
 
 
+def belt_with_one_left_out(folder: Path) -> Path:
+    """Write a project of two loads on a flat track, of which tyre.toml leaves a reading out; returns its path."""
+    simulated(flat(loads=(900, 1400)), folder)
+    path = folder / "tyre.toml"
+    out = (
+        '[fit]\nexclude = [ { file = "sideslip_1400.csv", lines = "4", why = "belt tracking" } ]  # by Anna\n'
+    )
+    path.write_text(f"{path.read_text(encoding='utf-8')}\n{out}", encoding="utf-8")
+    return path
+
+
 def built(content: dict[str, Any], folder: Path, seed: int = 3) -> mffit.results.BuildResult:
     """The build of a simulated campaign."""
     simulated(content, folder, seed)

@@ -6,23 +6,15 @@ import shutil
 from pathlib import Path
 
 import pytest
-from small_rigs import flat, simulated
+from small_rigs import belt_with_one_left_out
 
 import mffit
 from mffit.results import BuildResult
 
-LEFT_OUT = (
-    '\n[fit]\nexclude = [ { file = "sideslip_1400.csv", lines = "4", why = "belt tracking" } ]  # by Anna\n'
-)
-
 
 @pytest.fixture(scope="session")
 def original(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("window") / "original"
-    simulated(flat(loads=(900, 1400)), folder)
-    path = folder / "tyre.toml"
-    path.write_text(path.read_text(encoding="utf-8") + LEFT_OUT, encoding="utf-8")
-    return path
+    return belt_with_one_left_out(tmp_path_factory.mktemp("window") / "original")
 
 
 @pytest.fixture(scope="session")
