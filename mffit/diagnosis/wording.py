@@ -397,7 +397,10 @@ def _range(name: str, low: float, high: float) -> str:
     if name == "direction":
         return "backward runs" if high < 0 else "forward runs" if low > 0 else "both directions"
     quantity = CONDITIONS[name]
-    values = short(low) if low == high else f"{short(low)} to {short(high)}"
+    if low == high:
+        return f"{quantity.word} {short(low)} {quantity.unit_behind}".rstrip()
+    digits = max(2 - math.floor(math.log10(high - low)), 0)  # a limit near zero has no more than the other
+    values = " to ".join(short(round(limit, digits) + 0.0) for limit in (low, high))
     return f"{quantity.word} {values} {quantity.unit_behind}".rstrip()
 
 

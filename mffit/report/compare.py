@@ -34,8 +34,10 @@ FIRST, SECOND = (
 
 
 def curves_of_both(found: Comparison, channel: str) -> Sheet:
-    """Both curves with their 95 % bands over sideslip and camber, or over slip, a panel per load."""
+    """Both curves with their 95 % bands over sideslip and camber, or over slip, a panel per load; nothing if all are equal."""
     gaps = sorted((gap for gap in found.curves if gap.channel == channel), key=lambda gap: gap.load)
+    if not any(gap.rms for gap in gaps):
+        return NOTHING
     groups = [[_panel(found, gap) for gap in gaps if gap.over == over] for over in labels.OTHER]
     return Sheet(rows=in_rows(*groups), height=1.9, key={found.first: FIRST, found.second: SECOND})
 

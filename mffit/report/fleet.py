@@ -25,6 +25,8 @@ LOOKS = {
     "alone": Look(colour=style.CALM, marker="D", size=4.0, width=1.2),
     "together": Look(colour=style.ACCENT, marker="o", size=4.0, width=1.2),
 }
+STATED = Look(colour=style.INK, marker="o", size=4.0, width=1.2)
+"""Of a number of which there is one estimate."""
 COLUMNS = 3
 LINE = 0.28
 """Height for each tyre in a panel [in]."""
@@ -40,7 +42,7 @@ def numbers_of_all(found: Fleet) -> Sheet:
         Panel(
             title=quantity.column(f"{quantity.word} {quantity.mathtext}"),
             y=names,
-            series=[_bars(found.numbers(key), 0.0, LOOKS["together"], quantity.word)],
+            series=[_bars(found.numbers(key), 0.0, STATED, quantity.word)],
         )
         for key, quantity in COMPARED.items()
         if any(found.numbers(key))

@@ -292,6 +292,15 @@ def test_a_reader_sees_every_picture_of_the_page(folder, stiffer, tmp_path):
     assert_readable(tmp_path / "compare.html")
 
 
+def test_a_force_that_is_equal_on_both_sides_is_said_and_not_drawn(stiffer, tmp_path):
+    truth().write(tmp_path / "a.tir")
+    stiffer.write(tmp_path / "b.tir")
+    found = mffit.compare(tmp_path / "a.tir", tmp_path / "b.tir", out=tmp_path / "page")
+    assert {gap.channel for gap in found.curves if not gap.rms} == {"Fx"}
+    assert not (tmp_path / "page" / "plots" / "curves_Fx.png").exists()
+    assert "Longitudinal force is equal on both sides" in (tmp_path / "page" / "compare.html").read_text()
+
+
 def test_two_builds_of_one_name_are_called_by_their_folders(folder):
     later = shutil.copytree(folder / "out", folder / "later")
     found = mffit.compare(folder / "out", later)

@@ -184,6 +184,7 @@ def test_advice_names_the_file_the_rig_and_the_run(camber):
         ({"direction": (-1.0, 1.0)}, ["both directions"]),
         ({"p_kPa": (250.0, 250.0)}, ["pressure 250 kPa"]),
         ({"t_s": (0.0, 12345.6)}, ["time 0 to 12346 s"]),
+        ({"alpha_deg": (-3.0, 0.00013)}, ["sideslip -3 to 0 deg"]),
         ({}, []),
     ],
 )

@@ -290,3 +290,14 @@ def test_a_reader_sees_every_picture_on_screen_phone_and_paper(folder):
         look(browser, PAPER, media="print")
         assert complaints(browser) == []
         assert console_errors(browser) == []
+
+
+def test_everything_is_printed_if_asked_for(folder):
+    """The notes, with what the data cannot show, and the digests of the inputs."""
+    seen = "return [...document.querySelectorAll('.folded')].map(one => one.checkVisibility())"
+    with opened(folder / "diagnosis.html") as browser:
+        look(browser, PAPER, media="print")
+        assert not all(browser.execute_script(seen))
+        browser.execute_script("document.getElementById('everything').click()")
+        assert all(browser.execute_script(seen))
+        assert complaints(browser) == []
