@@ -74,10 +74,7 @@ def build(
     began = time.perf_counter()
     config = configuration.load(config)
     progress(READING)
-    of = made(
-        input_hashes(config)
-    )  # first: the digests of files that are replaced meanwhile are those of the old ones
-    read = _BuildInputs(config, read_points(config), read_base(config), of)
+    read = _BuildInputs(made(input_hashes(config)), config, read_points(config), read_base(config))
     progress(MEASURING)
     parts, before = measure(config, read.reading.points, read.base)
     if out is not None:
@@ -98,12 +95,12 @@ def build(
 
 
 class _BuildInputs(NamedTuple):
-    """What a build reads."""
+    """What a build reads, in this order."""
 
+    made: Made  #: with the digests before the files are read, so that they are not those of files that replace them meanwhile
     config: Config
     reading: Reading
     base: Tyre | None
-    made: Made
 
 
 def _names(config: Config) -> dict[str, str]:
