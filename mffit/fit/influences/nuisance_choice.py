@@ -98,18 +98,6 @@ def refuse_lacking(config: Config, points: Points) -> None:
             )
 
 
-def refuse_lacking(config: Config, points: Points) -> None:
-    """Refuse, with InputError, an influence that [fit] demands and for which the points lack something."""
-    for nuisance in NUISANCES:
-        if nuisance.setting(config) and (lacking := nuisance.lacking(points)):
-            raise InputError(
-                f"asks for the {nuisance.name}, but {lacking}; measure it, or remove the key",
-                file=config.path,
-                line=config.line_of(f"fit.{nuisance.key}"),
-                key=f"fit.{nuisance.key}",
-            )
-
-
 def choose(config: Config, first: Fitted) -> NuisanceChoice:
     """The influences that [fit] demands, and the significant ones.
 
