@@ -56,7 +56,7 @@ def write_build(
             result.tyres[use].write(folder / name)
         as_json.write(folder / "result.json", result)
         _write_information(folder / "information.json", result)
-        (folder / EXPLAINED).write_text(f"{text.build_explained(result)}\n", encoding="ascii")
+        (folder / EXPLAINED).write_text(f"{text.build_explained(result)}\n", encoding="utf-8")
         write_csv(points_table(result), folder / "points.csv")
         known, use = result.predicting
         if known is not None:

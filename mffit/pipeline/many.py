@@ -165,5 +165,5 @@ def is_current(config: Config, out: Path, *, ensemble: int = 0, with_report: boo
 
 def explained(out: Path) -> tuple[str, dict[str, Any]]:
     """All that is said about a build, and the content of its ``result.json``, from the folder that it wrote."""
-    text = (out / EXPLAINED).read_text(encoding="ascii").rstrip("\n")
+    text = (out / EXPLAINED).read_text(encoding="utf-8").rstrip("\n")
     return text, json.loads((out / "result.json").read_text(encoding="utf-8"))
