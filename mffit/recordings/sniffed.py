@@ -121,7 +121,7 @@ def sniff(
     bad = bad_runs(summaries)
     if len(bad) == len(recordings):
         raise InputError(f"every run is bad, as {bad[0].why}", file=files[0])
-    found, config = _read_under_axes(recordings, bad)
+    found, config = _read_under_axes(recordings, bad, unloaded_radius)
     two = [two_tyres.said(facts) for facts in two_tyres.find(found.points, config)][:1]
     two = two or list(filter(None, [two_specimens(summaries)]))
     warnings = (
@@ -135,7 +135,7 @@ def sniff(
 
 
 def _read_under_axes(
-    recordings: Sequence[SniffedRecording], bad: tuple[BadRun, ...]
+    recordings: Sequence[SniffedRecording], bad: tuple[BadRun, ...], radius: float | None
 ) -> tuple[Sniffed, Config]:
     """The recordings in the first rolling directions in which the likeliest axes agree with them, else under the first axes that
     do; and the configuration of these directions under the likeliest axes, "sae" for negative loads and "iso" for others.
@@ -143,13 +143,13 @@ def _read_under_axes(
     load_falls = any(r.guesses["Fz_N"].lower + r.guesses["Fz_N"].upper < 0.0 for r in recordings)
     axes = "sae" if load_falls else "iso"
     for directed in _either_way(recordings):
-        config = configuration_of(directed, axes, bad)
+        config = configuration_of(directed, axes, bad, radius)
         reading = read(config, may_be_empty=True)
         agreeing, wrong = axes_of(reading.points, axes, load_falls=load_falls)
         if axes in agreeing:
             break
     if agreeing and agreeing[0] != axes:
-        reading = read(configuration_of(directed, agreeing[0], bad), may_be_empty=True)
+        reading = read(configuration_of(directed, agreeing[0], bad, radius), may_be_empty=True)
     return Sniffed(
         recordings=directed,
         axes=agreeing,
@@ -202,8 +202,13 @@ def _either_way(recordings: Sequence[SniffedRecording]) -> Iterator[tuple[Sniffe
         yield tuple(recordings)
 
 
-def configuration_of(recordings: Sequence[SniffedRecording], axes: str, bad: Sequence[BadRun] = ()) -> Config:
-    """A configuration that reads these files without the bad runs, with a placeholder for the tyre."""
+def configuration_of(
+    recordings: Sequence[SniffedRecording],
+    axes: str,
+    bad: Sequence[BadRun] = (),
+    radius: float | None = None,
+) -> Config:
+    """A configuration that reads these files without the bad runs, with a placeholder for the tyre except its ``radius`` [m]."""
     sweeps = [
         {
             "file": str(recording.path.absolute()),
@@ -215,7 +220,7 @@ def configuration_of(recordings: Sequence[SniffedRecording], axes: str, bad: Seq
         for recording in recordings
     ]
     content = {
-        "tyre": {"name": "sniffed", **STAND_IN},
+        "tyre": {"name": "sniffed", **STAND_IN} | ({} if radius is None else {"unloaded_radius": radius}),
         "rig": {"type": "flat-track", "axes": axes},
         "fit": {
             "exclude": [
