@@ -321,8 +321,8 @@ def _descriptions(channel: ScatterOfChannel, only: MemorySpan | None = None) -> 
     """
     some = channel.sample
     never, with_memory, with_both = constants.MEMORY_MODEL_PROBABILITIES
-    offsets = [name for name in ("offsets",) if name in some.terms.columns]
-    first = some.likeliest(Description(("scale", "smooth", *offsets), never))
+    always = ("scale", "smooth", "offsets") if "offsets" in some.terms.columns else ("scale", "smooth")
+    first = some.likeliest(Description(always, never))
     growing = some.likeliest(first.by.plus("growth"), first)
     if growing.log_probability - first.log_probability > constants.SURPRISING_LOG_ODDS:
         first = growing

@@ -20,9 +20,10 @@ SIDE_FORCE, ARM, PRESSURE = "Fy", "k_p_arm_per_kPa", "p_ref_kPa"
 def by_force_read(
     simulation: Simulation, points: Points, forces: tuple[np.ndarray, np.ndarray], names: Sequence[str]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Change of Mx (n,) [Nm] by the first of two side ``forces`` (n,) [N] instead of the second, that of the model.
+    """Change of Mx (n,) [Nm] if the side force is the one that was read, not the one of the model.
 
-    Also its derivatives (n, k) by the named numbers at given forces, and those (n,) by the force of the model.
+    ``forces`` are both, (n,) [N] each, that which was read first. Also returned: the derivatives of the change by the named
+    numbers (n, k) at these forces, and by the force of the model (n,).
     """
     own = [name for name in names if name == ARM or (name in BY_NAME and BY_NAME[name].channel == "Mx")]
     at = traced({**{name: simulation.number(name, points) for name in own}, SIDE_FORCE: forces[1]})

@@ -126,9 +126,8 @@ class LinearisedChannel(ReadOnlyArrays):
         Few readings cannot tell noise from model error that bends between them, which the best model at the stated noise has
         in its place.
         """
-        return self.stride * (
-            self._evidence - self.alone.evidence(self.alone.most_probable(self.unit, self.components, 1.0))
-        )
+        at_stated = self.alone.most_probable(self.unit, self.components, most_noise=1.0)
+        return self.stride * (self._evidence - self.alone.evidence(at_stated))
 
     @cached_property
     def proof(self) -> float:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -58,28 +58,35 @@ class Mixed(ReadOnlyArrays):
 
     @cached_property
     def _sums(self) -> _Sums:
-        groups = [successive(g) for g in self.groups]
-        parts = [(self.common[g], self.own[g], self.residual[g]) for g in groups]
-        rows = successive(np.concatenate([np.zeros(0, dtype=int), *self.groups]))
-        common, residual = self.common[rows], self.residual[rows]
+        parts = [(self.common[g], self.own[g]) for g in map(successive, self.groups)]
+        rows = self._rows
+        common = self.common[rows]
         return _Sums(
             common=common.T @ common,
-            pull=common.T @ residual,
-            across=np.array([z.T @ x for x, z, _ in parts]),
-            own=np.array([z.T @ z for _, z, _ in parts]),
-            own_pull=np.array([z.T @ r for _, z, r in parts]),
-            square=float(residual @ residual),
-            readings=len(residual),
+            across=np.array([z.T @ x for x, z in parts]),
+            own=np.array([z.T @ z for _, z in parts]),
+            readings=len(common),
+            **self._sums_of(self.residual),
         )
+
+    @cached_property
+    def _rows(self) -> slice | np.ndarray:
+        """Of all groups."""
+        return successive(np.concatenate([np.zeros(0, dtype=int), *self.groups]))
+
+    def _sums_of(self, residual: np.ndarray) -> dict[str, Any]:
+        """The sums of products that hold the residuals (n,)."""
+        all_rows = residual[self._rows]
+        return {
+            "pull": self.common[self._rows].T @ all_rows,
+            "own_pull": np.array([self.own[g].T @ residual[g] for g in map(successive, self.groups)]),
+            "square": float(all_rows @ all_rows),
+        }
 
     def of(self, residual: np.ndarray) -> Mixed:
         """The same model of other residuals (n,), without summing the products of the columns again."""
-        other, groups = replace(self, residual=residual), [successive(g) for g in self.groups]
-        vars(other)["_sums"] = self._sums._replace(
-            pull=np.sum([self.common[g].T @ residual[g] for g in groups], axis=0),
-            own_pull=np.array([self.own[g].T @ residual[g] for g in groups]),
-            square=float(np.sum([residual[g] @ residual[g] for g in groups])),
-        )
+        other = replace(self, residual=residual)
+        vars(other)["_sums"] = self._sums._replace(**self._sums_of(residual))
         return other
 
     @cached_property

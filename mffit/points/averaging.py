@@ -50,8 +50,8 @@ def means(
 ) -> Means:
     """Points: means over plateaus, with estimated standard errors if the file states none, and over short blocks of sweeps.
 
-    ``phi_t`` is the turn slip of the path [1/m]; ``labels`` name the sweep of each stretch; samples of the mask ``faulty`` (n,)
-    are left out; ``radius`` is that of the wheel [m].
+    ``phi_t`` is the turn slip of the path [1/m], ``radius`` the wheel's [m]. ``labels`` name the sweep of each stretch. Samples
+    of the mask ``faulty`` (n,) are left out.
     """
     used = np.zeros(len(sweep), dtype=bool)
     if not stretches:

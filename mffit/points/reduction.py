@@ -40,9 +40,9 @@ def reduce(
 ) -> Reduced:
     """The points of one sweep: means over plateaus and, where an angle keeps moving, over short times, marked ``continuous``.
 
-    Every moving stretch is a sweep of its own. ``phi_t`` is the turn slip of the path [1/m]; ``scale`` is the usual size of the
-    settings in all series of the campaign, to judge changes (None: that of this series); ``whole`` is the series with the lines
-    that are left out by hand (None: no line is, or one of them cannot be read); ``radius`` is that of the wheel [m].
+    Every moving stretch is a sweep of its own. ``phi_t`` is the turn slip of the path [1/m], ``radius`` the wheel's [m].
+    ``scale`` is the usual size of the settings in all series of the campaign, to judge changes; None: that of this series.
+    ``whole`` is the series with the lines that are left out by hand; None if there are none, or one of them cannot be read.
 
     Raises InputError if the time of a series does not rise.
     """

@@ -274,7 +274,7 @@ export function showFiles() {
 // For the console: mffit.evaluate(0, true, [Fz, alpha, gamma, kappa, phi_t, Vx, pressure]), in SI. And for tests.
 const panelOf = key => panels.find(panel => panel.key === key);
 const filesApi = {
-    evaluate: (index, turnSlip, inputs) =>
+  evaluate: (index, turnSlip, inputs) =>
     Object.assign({}, ...Object.values(tyres[index][turnSlip ? "on" : "off"]).map(model => model(...inputs))),
   curve(key, index) {
     const {points, zones} = lineOf(panelOf(key), tyres[index]);

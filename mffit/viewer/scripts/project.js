@@ -36,7 +36,6 @@ function showMisfit() {
   });
 }
 
-
 const projectPart = {
   ...pointing, scene: sceneOf, still: drawStill, moving: drawMoving, above: drawAbove,
   compute() { if (project) recompute(dragging); },

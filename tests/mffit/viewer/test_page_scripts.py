@@ -126,7 +126,7 @@ def test_what_the_rig_read_is_what_the_tyre_felt_and_the_rig_added(engine, resul
 
 
 def test_a_flipped_tyre_has_its_conicity_the_other_way(result):
-    """The misfit of the same readings, half of them said to be of a flipped tyre, is that of the simulation."""
+    """If every second reading is declared as one of a flipped tyre, the page shows the misfit that the simulation has."""
     points = result.points.replace(mount=np.where(np.arange(len(result.points)) % 2, -1, 1))
     values = result.fit.tyre.values | {"PHY1": 0.004, "PVY1": 0.03}
     tyre = result.fit.tyre.replace(**{name: values[name] for name in ("PHY1", "PVY1")})

@@ -241,7 +241,7 @@ def shown(browser, name: str) -> float:
 
 
 def test_the_address_keeps_what_is_seen(browser):
-    """Condition, hidden tyres and differences; what is no state of a page leaves it as it opens."""
+    """The address keeps condition, hidden tyres and differences; one that holds something else opens the page as it was made."""
     move(browser, gamma=7, Fz=2000)
     for css in ("input[value=off]", "#difference", "#legend tr:nth-child(3) input"):
         browser.find_element("css selector", css).click()
