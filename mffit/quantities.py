@@ -94,6 +94,8 @@ SIDEWAYS = {name: CHANNELS[name] for name in ("Fy", "Mz")}
 """Channels of every test: Fy is required, and Mz is simulated with it whether or not it was measured."""
 REVERSED_BY_A_MIRROR = frozenset({"Fy", "Mx", "Mz"})
 """Channels with the other sign in a mirror, where sideslip, camber and the path's curvature have the other sign."""
+REVERSED_BY_HALF_A_TURN = frozenset({"Fx", "Fy", "Mx", "My"})
+"""Channels with the other sign in axes turned by half a revolution about z, where a wheel that rolls backwards rolls forwards."""
 SLOPE_ON_PATH = "slope at zero on the path of the measurement"
 DIRECT = {
     "epsilon_gamma": QuantityName("camber reduction factor", "ε_γ", "-", "1 + r_e C_gamma / C_phit (17)", "PECP1 and PECP2"),

@@ -14,7 +14,7 @@ from mffit.fit.problem import FitProblem
 from mffit.linearised import LinearisedChannel, LinearisedFit
 from mffit.linearised.components import own_columns
 from mffit.linearised.fitted import unit_of
-from mffit.linearised.inputs import along, settings_of
+from mffit.linearised.inputs import along, settings_of, turned
 from mffit.linearised.mixed import Mixed, MixedPosterior
 from mffit.scatter import beyond
 from tir.frozen import ReadOnlyArrays
@@ -63,7 +63,8 @@ def _judged(
             residual=np.where(np.isfinite(u) & ~turning[name], residual / unit, np.nan),
             unit=unit,
             noise=np.maximum(channel.components.noise, u / unit),
-            settings=settings_of(felt, inputs),
+            columns=(turned(points, name) / unit)[:, None]
+            * channel.smooth.columns(settings_of(felt, inputs)),
             place=place,
             own=own_columns(readings[name], place) / unit[:, None],
         )
@@ -81,7 +82,7 @@ class _OfOthers(ReadOnlyArrays):
     residual: np.ndarray  #: measured less model [unit]; NaN where not judged
     unit: np.ndarray  #: as in ``channel``, but of all readings
     noise: np.ndarray  #: [unit]
-    settings: np.ndarray  #: (n, d)
+    columns: np.ndarray  #: (n, m) smooth functions of the model error [1/unit]
     place: np.ndarray  #: position in the range of what the sweep moves
     own: np.ndarray  #: (n, q) columns of the effects of runs
 
@@ -132,9 +133,10 @@ class _OfOthers(ReadOnlyArrays):
     def _distance(self, rows: np.ndarray, k: int, model: Mixed, found: MixedPosterior) -> np.ndarray:
         """Distance (m,) of the ``rows`` of the sweep ``k`` from their predictions, each in standard deviations."""
         noise = self.channel.variances.noise
-        columns = self.channel.smooth.columns(self.settings[rows]) / self.unit[rows, None]
         own = self.own[rows] * np.any(model.own)  # a single sweep has no effects of its own
-        error, spread = model.predict_further(found, noise, k, Mixed(self.residual[rows], columns, own, ()))
+        error, spread = model.predict_further(
+            found, noise, k, Mixed(self.residual[rows], self.columns[rows], own, ())
+        )
         # Of a reading that is in the model, the others predict what it would be without it.
         inside = np.isin(rows, self.channel.rows[model.groups[k]])
         unexplained = 1.0 - np.exp(-noise) * spread * inside

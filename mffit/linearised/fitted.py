@@ -12,7 +12,7 @@ import numpy as np
 from mffit.least_squares import inverse, root
 from mffit.linearised import constants
 from mffit.linearised.components import Components, Terms, own_columns
-from mffit.linearised.inputs import along, inputs_of, settings_of
+from mffit.linearised.inputs import along, inputs_of, settings_of, turned
 from mffit.linearised.mixed import LeftOutReadings, Mixed, MixedPosterior, Variances
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
@@ -89,7 +89,8 @@ class LinearisedChannel(ReadOnlyArrays):
         inputs = self.smooth.inputs
         settings, middle = settings_of(points, inputs), [0.5 * (one.lower + one.upper) for one in inputs]
         settings = np.where(np.isfinite(settings), settings, middle)
-        return self.smooth.faded(settings, np.array(self.components.lengths))
+        likeness, functions = self.smooth.faded(settings, np.array(self.components.lengths))
+        return likeness, turned(points, self.name)[:, None] * functions
 
     def without_runs(self, rows: Sequence[np.ndarray], *, missed: bool) -> list[LeftOutReadings]:
         """Prediction of each set of ``rows`` from all other readings in a model without random effects of the runs.
@@ -270,13 +271,13 @@ class _Sight(NamedTuple):
 
     def at(self, rows: np.ndarray, channel: str) -> _LookedAt:
         """The points of some rows (n,) with the smooth functions of a channel, cached."""
-        sign = -1 if channel in REVERSED_BY_A_MIRROR else 1
-        key = (rows.tobytes(), sign)
+        mirrored = -1 if channel in REVERSED_BY_A_MIRROR else 1
+        key = (rows.tobytes(), mirrored)
         known = self.looked_at.get(key)
         if known is None:
             part, at_tyre = (p.select(rows, with_table=False) for p in (self.points, self.felt))
             inputs = inputs_of(at_tyre)
-            smooth = SmoothFunctions.over(inputs, sign)
+            smooth = SmoothFunctions.over(inputs, mirrored)
             columns = smooth.columns(settings_of(at_tyre, inputs))
             known = _LookedAt(part, smooth, columns, along(at_tyre, inputs))
             self.looked_at[key] = known
@@ -317,7 +318,7 @@ def _channel(
     own = own_columns(model[rows], place)
     if len(groups) == 1:  # random effects are not identifiable, and would absorb the model error
         own = np.zeros_like(own)
-    missed = functions / unit[:, None]
+    missed = (turned(part, name) / unit)[:, None] * functions
     slopes = sight.simulation.sensitivities(part, [number.name for number in sight.numbers], [name])[1][name]
     of_rig = [i for i, number in enumerate(sight.numbers) if _of_rig(number)]
     rig = slopes[:, of_rig] / unit[:, None]

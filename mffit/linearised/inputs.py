@@ -9,7 +9,7 @@ import numpy as np
 
 from mffit.linearised import constants
 from mffit.points import Points, levels
-from mffit.quantities import CONDITIONS
+from mffit.quantities import CONDITIONS, REVERSED_BY_HALF_A_TURN
 
 LEVELS: Mapping[str, levels.LevelKind] = {
     "alpha": levels.SIDESLIP,
@@ -23,11 +23,10 @@ COLUMNS: Mapping[str, str] = {column.partition("_")[0]: column for column in CON
 """Column of a table by condition."""
 OTHER_WORDS: Mapping[str, str] = {
     "phi_t": "path curvature",
-    "direction": "direction of rolling",
-    "mount": "mount of the tyre",
+    "mount": "mount of the tyre or direction of rolling",
     "sense": "sense of the sweeps",
 }
-ALSO: tuple[str, ...] = ("phi_t", "T", "direction", "mount")
+ALSO: tuple[str, ...] = ("phi_t", "T", "mount")
 """Further conditions, each used only if it varies."""
 REVERSED: frozenset[str] = frozenset({"alpha", "gamma", "phi_t"})
 """Conditions that a mirror reverses."""
@@ -62,12 +61,32 @@ def word_of(name: str) -> str:
     return CONDITIONS[COLUMNS[name]].word if name in COLUMNS else OTHER_WORDS[name]
 
 
+def forwards(points: Points) -> Points:
+    """The points in axes in which the wheel rolls forwards, and a tyre that rolled backwards is turned on its rim.
+
+    In these axes the model error is one function of the conditions, as the forces of :func:`tir.evaluate.either_way` are.
+    """
+    turned = points.direction
+    return points.replace(
+        gamma=turned * points.gamma,
+        phi_t=turned * points.phi_t,
+        mount=turned * points.mount,
+        direction=np.abs(turned),
+    )
+
+
+def turned(points: Points, channel: str) -> np.ndarray:
+    """Sign (n,) of a channel in the axes of :func:`forwards` over that of its reading."""
+    return points.direction if channel in REVERSED_BY_HALF_A_TURN else np.ones(len(points))
+
+
 def inputs_of(points: Points) -> tuple[Input, ...]:
     """The conditions that vary in these points.
 
     On one side of a disc the mirror images of the readings count too: those of the other side, between which the straight road
     lies.
     """
+    mirrored, points = points.one_sided, forwards(points)
     found = []
     for name, kind in LEVELS.items():
         values = getattr(points, name)
@@ -91,8 +110,8 @@ def inputs_of(points: Points) -> tuple[Input, ...]:
         senses = sense(points, swept_of(points, tuple(found)))
         if np.any(senses > 0.0) and np.any(senses < 0.0):
             found.append(Input("sense", -1.0, 1.0, 2.0, (-1.0, 1.0)))
-    if points.one_sided:
-        found = [_mirrored(one) if one.name in REVERSED else one for one in found]
+    if mirrored:
+        found = [_mirrored(one) if one.name in REVERSED else one for one in found if one.name != "phi_t"]
         end = float(np.max(np.abs(points.phi_t)))
         found.append(Input("phi_t", -end, end, end, mirrored=True))
     return tuple(found)
@@ -143,6 +162,7 @@ def sense(points: Points, swept: Mapping[int, str]) -> np.ndarray:
 
 def settings_of(points: Points, inputs: tuple[Input, ...]) -> np.ndarray:
     """The conditions (n, d); a condition that a run holds is replaced by the run's mean, which removes control errors."""
+    points = forwards(points)
     out = np.empty((len(points), len(inputs)))
     for i, one in enumerate(inputs):
         if one.name == "sense":
@@ -158,7 +178,7 @@ def settings_of(points: Points, inputs: tuple[Input, ...]) -> np.ndarray:
 
 def along(points: Points, inputs: tuple[Input, ...]) -> np.ndarray:
     """Position (n,) of every point in the tested range of the condition that its sweep moves, 0 to 1."""
-    by_name = {one.name: one for one in inputs}
+    points, by_name = forwards(points), {one.name: one for one in inputs}
     out = np.zeros(len(points))
     for k, name in swept_of(points, inputs).items():
         rows = points.sweep == k

@@ -83,10 +83,21 @@ def test_a_temperature_that_was_measured_in_part_is_no_input():
     assert "T" not in [one.name for one in inputs_of(programme(T=T))]
 
 
-def test_two_paths_and_both_directions_are_inputs():
+def test_two_paths_and_both_mounts_are_inputs():
     half = np.repeat([1, -1], 63)
-    found = [one.name for one in inputs_of(programme(phi_t=0.75 * half, direction=half))]
-    assert found[-2:] == ["phi_t", "direction"]
+    found = [one.name for one in inputs_of(programme(phi_t=0.75 * half, mount=half))]
+    assert found[-2:] == ["phi_t", "mount"]
+
+
+def test_a_wheel_that_rolls_backwards_is_one_turned_on_its_rim_that_rolls_forwards():
+    """Backwards, camber and the curvature of the path are reversed in the axes in which the wheel rolls forwards."""
+    half = np.repeat([1, -1], 63)
+    whole = programme(phi_t=0.75 * half, direction=half)
+    ahead = whole.replace(gamma=half * whole.gamma, phi_t=0.75, mount=half, direction=1)
+    inputs = inputs_of(ahead)
+    assert inputs_of(whole) == inputs
+    assert [one.name for one in inputs][-1] == "mount"
+    assert settings_of(whole, inputs) == pytest.approx(settings_of(ahead, inputs))
 
 
 def test_a_condition_that_runs_move_through_is_swept_however_few_its_settings():

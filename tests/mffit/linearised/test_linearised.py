@@ -72,6 +72,17 @@ def test_left_out_runs_lie_as_far_off_as_stated(found):
     assert usual == pytest.approx(np.hypot(OFFSET, NOISE), rel=0.35)
 
 
+def test_a_wheel_that_rolls_backwards_misses_what_one_turned_on_its_rim_misses_forwards():
+    """Half a turn of the axes makes one of the other: camber and side force are reversed."""
+    ahead = drawn()
+    turned = np.where(ahead.sweep % 5 == 0, -1, 1)
+    ahead = ahead.replace(mount=turned)
+    behind = ahead.replace(mount=1, direction=turned, gamma=turned * ahead.gamma, Fy=turned * ahead.Fy)
+    one, other = left(ahead), left(behind)
+    assert one.size > 0.8 * MISSED
+    assert other.missed_at_readings == pytest.approx(turned * one.missed_at_readings, abs=0.01 * MISSED)
+
+
 def test_a_noise_beyond_the_stated_one_is_proven(found):
     assert found.proof_of_noise < 3.0
     points = drawn()
