@@ -12,6 +12,11 @@ USUAL_CORNERING_STIFFNESS = Real(
 )
 USUAL_U_FORCE = Real(6.0, "N", "Standard uncertainty of Fy of a finished point that states none.")
 USUAL_U_MOMENT = Real(0.6, "Nm", "Standard uncertainty of Mz of a finished point that states none.")
+MISFIT_AT_NOISE = Real(
+    1.2,
+    "-",
+    "Misfit over the noise up to which residuals count as noise; beyond it a significant one is in doubt.",
+)
 EXPLAINED_SHARE = Real(
     1.0 / 3.0, "-", "A known mistake explains an error if undoing it leaves less than this share."
 )

@@ -36,7 +36,7 @@ def compare(rig_toml: str, folder: str) -> tuple[points.Points, Mapping[str, tup
     """
     truth = virtual_rig.simulate(rig_toml, folder)
     tyre = tir.read(virtual_rig.load_plan(rig_toml).tyre_path)
-    measured, _ = points.load(config.load(f"{folder}/tyre.toml"))
+    measured = points.read(config.load(f"{folder}/tyre.toml")).points
     residuals = {}
     for name, simulation in models(tyre, truth.faults).items():
         found = simulation.readings(measured)

@@ -212,7 +212,6 @@ PARTS_OF_A_RUN = Count(
 )
 
 # What a fit leaves
-MISFIT_AT_NOISE = Real(1.2, "-", "Misfit over stated noise up to which the residuals count as noise.")
 IMITATED_SHARE = Real(
     1e-3, "-", "Share of an effect below which fitted numbers imitate it and residuals say nothing."
 )

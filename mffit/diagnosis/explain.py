@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from mffit.constants import MISFIT_AT_NOISE
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import bump_scan
 from mffit.diagnosis.explanation import Explanation
@@ -99,7 +100,7 @@ def _of_fitted_model(search: Search) -> Explanation:
     for _ in range(constants.MOST_EXPLANATION_ROUNDS):
         last, state = found, search.start if found is None else found.refined.state
         found = _selected_around(search, state, noise, None if found is None else found.chosen)
-        if rms(search.misfit / noise.u) > constants.MISFIT_AT_NOISE:
+        if rms(search.misfit / noise.u) > MISFIT_AT_NOISE:
             found = replace(found, misfit=search.misfit)
         if found.smooth.found:
             break  # left-out sweeps decide; the noise hardly matters against the misfit of the given model

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 from mffit.as_json import Json, document
+from mffit.constants import MISFIT_AT_NOISE
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.noise import MemorySpan, Noise, Origin
@@ -89,8 +90,7 @@ def reasons(diagnosis: Diagnosis) -> tuple[str, ...]:
     missed = ", and ".join(
         f"{name} by {short(size)} {unit} where the noise is {short(noise)} {unit}"
         for name, unit, noise in _measured(diagnosis.noise)
-        if (size := diagnosis.gap_after.rms(name)) > constants.MISFIT_AT_NOISE * noise
-        or name == first.channel
+        if (size := diagnosis.gap_after.rms(name)) > MISFIT_AT_NOISE * noise or name == first.channel
     )
     return (
         f"no effect of the library explains what remains: the model misses {missed}{sweep}; {_cure(diagnosis)}",
@@ -152,7 +152,7 @@ def _misfit(diagnosis: Diagnosis) -> str:
     parts = []
     for name, unit, noise in _measured(diagnosis.noise):
         was, is_ = short(given.rms(name)), short(after.rms(name))
-        if effects and was == is_ and given.rms(name) < constants.MISFIT_AT_NOISE * noise:
+        if effects and was == is_ and given.rms(name) < MISFIT_AT_NOISE * noise:
             continue
         now = f"{is_} {unit} instead of {was} {unit}" if effects else f"{was} {unit}"
         parts.append(

@@ -99,7 +99,7 @@ class LinearisedChannel(ReadOnlyArrays):
         """
         functions = len(self.missed)
         noise = self.components.noise if missed else robust(self.model.residual)
-        given = self.variances.alike._replace(noise=2.0 * float(np.log(max(noise, 1.0))))
+        given = self.model.alike(self.variances.common, 2.0 * float(np.log(max(noise, 1.0))))
         if missed:
             return self._left_out(self.model, given, rows)
         plain = replace(self.model, common=self.model.common[:, functions:])

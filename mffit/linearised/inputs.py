@@ -24,7 +24,6 @@ COLUMNS: Mapping[str, str] = {column.partition("_")[0]: column for column in CON
 OTHER_WORDS: Mapping[str, str] = {
     "phi_t": "path curvature",
     "mount": "mount of the tyre or direction of rolling",
-    "sense": "sense of the sweeps",
 }
 ALSO: tuple[str, ...] = ("phi_t", "T", "mount")
 """Further conditions, each used only if it varies."""
@@ -36,7 +35,7 @@ REVERSED: frozenset[str] = frozenset({"alpha", "gamma", "phi_t"})
 class Input:
     """One condition, in SI units."""
 
-    name: str  #: field of :class:`mffit.points.Points`, or ``sense``
+    name: str  #: field of :class:`mffit.points.Points`
     lower: float  #: lower end of the tested range
     upper: float  #: upper end of the tested range
     spacing: float  #: distance of neighbouring settings, the shortest length scale
@@ -106,10 +105,6 @@ def inputs_of(points: Points) -> tuple[Input, ...]:
             found.append(_input(name, values, int(constants.DIVISIONS_OF_WARMING), usual))
         else:
             found.append(_input(name, values, 1))
-    if "T" not in [one.name for one in found]:  # up and down sweeps differ mostly by temperature
-        senses = sense(points, swept_of(points, tuple(found)))
-        if np.any(senses > 0.0) and np.any(senses < 0.0):
-            found.append(Input("sense", -1.0, 1.0, 2.0, (-1.0, 1.0)))
     if mirrored:
         found = [_mirrored(one) if one.name in REVERSED else one for one in found if one.name != "phi_t"]
         end = float(np.max(np.abs(points.phi_t)))
@@ -150,24 +145,11 @@ def swept_of(points: Points, inputs: tuple[Input, ...]) -> dict[int, str]:
     return out
 
 
-def sense(points: Points, swept: Mapping[int, str]) -> np.ndarray:
-    """Sense (n,) of moving sweeps: 1 where the swept condition rises, -1 where it falls; 0 at steady points."""
-    out = np.zeros(len(points))
-    for k, name in swept.items():
-        rows = np.flatnonzero((points.sweep == k) & points.continuous)
-        if len(rows) > 2:
-            out[rows] = np.sign(np.gradient(getattr(points, name)[rows]))
-    return out
-
-
 def settings_of(points: Points, inputs: tuple[Input, ...]) -> np.ndarray:
     """The conditions (n, d); a condition that a run holds is replaced by the run's mean, which removes control errors."""
     points = forwards(points)
     out = np.empty((len(points), len(inputs)))
     for i, one in enumerate(inputs):
-        if one.name == "sense":
-            out[:, i] = sense(points, swept_of(points, inputs))
-            continue
         out[:, i] = getattr(points, one.name)
         if one.name != "T":
             for rows in _runs(points):

@@ -32,11 +32,6 @@ class Variances(NamedTuple):
     own: np.ndarray  #: (q,) of the random effects
     noise: float  #: of the noise, relative to the stated variance
 
-    @property
-    def alike(self) -> Variances:
-        """The same without random effects."""
-        return self._replace(own=np.full(len(self.own), HELD))
-
 
 class MixedEvidence(NamedTuple):
     """Log marginal likelihood of the residuals, up to a constant, and its derivatives by :class:`Variances`."""
@@ -88,6 +83,10 @@ class Mixed(ReadOnlyArrays):
         other = replace(self, residual=residual)
         vars(other)["_sums"] = self._sums._replace(**self._sums_of(residual))
         return other
+
+    def alike(self, common: np.ndarray, noise: float = 0.0) -> Variances:
+        """Log variances without random effects, with ``common`` (m,) of the common numbers."""
+        return Variances(common, np.full(self.own.shape[1], HELD), noise)
 
     @cached_property
     def _group_of(self) -> np.ndarray:

@@ -115,7 +115,7 @@ def align(
     source = Path(source)
     if source.suffix == ".toml":
         config = configuration.load(source)
-        return _aligned(config, ingestion.load(config)[0], resolution_deg)
+        return _aligned(config, ingestion.read(config).points, resolution_deg)
     points = ingestion.load_table(source, axes=axes, path_centre=path_centre)
     return direct.align(points, axes=axes or "iso", resolution_deg=resolution_deg)
 

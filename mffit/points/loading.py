@@ -57,12 +57,6 @@ class Reading(NamedTuple):
     reasons: tuple[str, ...] = ()  #: warnings for which a result of these points is not to be trusted
 
 
-def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str, ...]]:
-    """Points and warnings of :func:`read`."""
-    found = read(config, continuous=continuous)
-    return found.points, found.warnings
-
-
 def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False) -> Reading:
     """The sweeps of a checked ``tyre.toml`` as points in ISO-W axes; :func:`mffit.suspicion.before_the_fit` judges them.
 

@@ -13,6 +13,7 @@ from scipy.special import chdtrc, chdtri, stdtrit
 
 from mffit.constants import EXPLAINED_SHARE, FALSE_ALARM
 from mffit.points import constants, levels
+from mffit.points.clock import sense
 from mffit.points.like import MeanReadings, conditions, mean_readings, noise, rolling
 from mffit.points.points import Points, of_si
 from mffit.quantities import CONDITIONS
@@ -215,11 +216,7 @@ def _keys(setting: str, points: Points) -> np.ndarray:
     """Per point (n, 8) what must be alike to compare sweeps under a setting: the labels of the others first, sideslip last."""
     others = [(name, kind) for name, (_, kind) in LABELS.items() if name != setting]
     alike = conditions(points, others)
-    rising = np.zeros(len(points), dtype=int)
-    for k in np.unique(points.sweep[points.continuous]):
-        rows = np.flatnonzero((points.sweep == k) & points.continuous)
-        if len(rows) > 1:
-            rising[rows] = np.sign(np.gradient(points.alpha[rows]))
+    rising = sense(points) * points.continuous
     return np.column_stack([alike[:, : len(others)], points.setup, rising, alike[:, len(others) :]])
 
 

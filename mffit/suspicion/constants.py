@@ -81,7 +81,6 @@ MOST_SUSPECTS = Count(6, "-", "Most suspected sweeps, worst first, without which
 
 # The fitted model
 DISTRUSTED_MISFIT = Real(1.5, "-", "Misfit over stated noise above which a file is not trusted.")
-MISFIT_IN_DOUBT = Real(1.2, "-", "Misfit over stated noise above which a file is in doubt.")
 CERTAIN_SIGMA = Real(
     5.0, "-", "Standard deviations beyond which chance explains neither a misfit nor a bound that is hit."
 )

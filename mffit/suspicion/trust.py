@@ -24,6 +24,7 @@ from mffit.constants import (
     CAMBER_OF_SLOPES,
     FALSE_ALARM,
     LEAST_PREDICTED_SHARE,
+    MISFIT_AT_NOISE,
     NAMED_IN_SENTENCE,
     ODD_SWEEP_RATIO,
 )
@@ -149,7 +150,7 @@ class FinishedFit(ReadOnlyArrays, JudgedMeasurement):
 
     def doubtful(self, channel: str) -> bool:
         """Whether the rough part of a misfit significantly exceeds the noise."""
-        return self.rough(channel, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA)
+        return self.rough(channel, MISFIT_AT_NOISE, constants.DOUBTFUL_SIGMA)
 
     def at_the_noise(self, channel: str) -> bool:
         """Whether all residuals of a channel are noise, as stated or as estimated from neighbouring readings.
@@ -158,7 +159,7 @@ class FinishedFit(ReadOnlyArrays, JudgedMeasurement):
         """
         stated, seen = self.misfit(channel), self.over_scatter(channel)
         seen = seen._replace(of_noise=EFFICIENCY * seen.n)  # the estimated noise is itself uncertain
-        if any(far(one, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA) for one in (stated, seen)):
+        if any(far(one, MISFIT_AT_NOISE, constants.DOUBTFUL_SIGMA) for one in (stated, seen)):
             return False
         return stated.ratio > constants.MISFIT_OF_ANOTHER_UNIT if stated.n else bool(seen.n)
 
@@ -178,7 +179,7 @@ class FinishedFit(ReadOnlyArrays, JudgedMeasurement):
             return False
         seen = self.linear.channels[channel]
         over = OverNoise(seen.misfit / seen.components.noise, len(seen.rows))
-        return far(over, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA) and not self.doubtful(channel)
+        return far(over, MISFIT_AT_NOISE, constants.DOUBTFUL_SIGMA) and not self.doubtful(channel)
 
 
 def far(found: OverNoise, limit: float, sigma: float) -> bool:
@@ -517,7 +518,7 @@ def structure_left(fit: FinishedFit) -> Iterator[Facts]:
 def whole_sweeps(fit: FinishedFit) -> Iterator[Facts]:
     """Misfit over the stated noise that is neither noise within the sweeps nor proven to be common to all of them."""
     for name, channel in fit.linear.channels.items() if fit.linear else ():
-        beyond = fit.misfit(name).ratio > constants.MISFIT_IN_DOUBT and fit.beyond_scatter(name)
+        beyond = fit.misfit(name).ratio > MISFIT_AT_NOISE and fit.beyond_scatter(name)
         if beyond and not channel.is_proven:
             yield {"channel": name, "ratio": fit.misfit(name).ratio, "carriers": _carriers(fit, name)}
 

@@ -89,22 +89,15 @@ def take_back(text: str, *, readings: Sequence[Mapping[str, Any]]) -> str:
                         gone.append(k)
                     elif kept != list(_ranges(entry)):
                         entry["lines"] = _lines(kept)
-            _remove(entries, gone)
+            if len(gone) == len(entries):  # one by one, each deletion numbers all others anew
+                gone = []
+                entries.clear()
+            for k in reversed(gone):  # those before it keep their numbers
+                del entries[k]
         if not entries:
             del document["fit"]["exclude"]
 
     return _edited(text, change)
-
-
-def _remove(entries: Any, places: Sequence[int]) -> None:
-    """Remove the entries at these places, which are in order."""
-    if isinstance(entries, Array):  # numbers all entries anew at each deletion: thousands would take seconds
-        entries._reindex, number = (lambda: None), entries._reindex  # type: ignore[method-assign]
-    for place in reversed(places):  # those before it keep their numbers
-        del entries[place]
-    if isinstance(entries, Array):
-        entries._reindex = number  # type: ignore[method-assign]
-        number()
 
 
 def setting(text: str, *, table: str, key: str, value: str, file: str = "") -> str:

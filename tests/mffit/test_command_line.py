@@ -21,7 +21,7 @@ import tir
 from mffit import config, pipeline
 from mffit.cli import main
 from mffit.errors import InputError
-from mffit.points import load
+from mffit.points import read
 
 ROOT = Path(__file__).parents[2]
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -207,7 +207,7 @@ def test_the_resolved_configuration_reads_the_same_points(built):
     assert again.tyre == first.tyre
     assert again.rig == first.rig
     assert again.spin == first.spin
-    (one, _), (other, _) = (load(each) for each in (first, again))
+    one, other = (read(each).points for each in (first, again))
     pd.testing.assert_frame_equal(one.table, other.table)
     for name in ("alpha", "gamma", "Fz", "phi_t", "p", "V", "Fy", "Mz", "u_Fy", "u_Mz", "direction", "mount"):
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name))

@@ -122,7 +122,7 @@ class JointFit(ReadOnlyArrays):
 
     def alike(self, held: Collection[str] = ()) -> Variances:
         """The variances without random effects."""
-        return Variances(self._held(held), np.full(self.model.own.shape[1], HELD), 0.0)
+        return self.model.alike(self._held(held))
 
     def further(self, columns: np.ndarray) -> FurtherColumns:
         """The information of the readings about further columns (m, j), without random effects."""

@@ -15,8 +15,7 @@ from mffit import pipeline
 from mffit.config import Config
 from mffit.config import load as load_config
 from mffit.diagnosis import Diagnosis
-from mffit.points import Points
-from mffit.points import load as load_points
+from mffit.points import Points, read
 from mffit.rig import Simulation
 
 LOOK_ALIKE = (
@@ -35,7 +34,7 @@ def loaded(case: Case, folder: Path) -> tuple[Config, Points]:
     """Configuration and points of a case, through its files."""
     write_case(case, folder / case.name, folder / f"{case.name}.json")
     settings = load_config(folder / case.name / "tyre.toml")
-    return settings, load_points(settings)[0]
+    return settings, read(settings).points
 
 
 @dataclass(frozen=True)

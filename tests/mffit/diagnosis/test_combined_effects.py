@@ -30,7 +30,7 @@ LIKE = SAME | {other: {name} for name, others in SAME.items() for other in other
 def gains(effect: str, folder, added=()) -> dict[str, float]:
     """Gain in log evidence of every candidate to first order, best first."""
     given = simulated(effect, 0.4, 5, folder, added=added)
-    read = by_condition(points.load(config.load(folder / "rig" / "tyre.toml"))[0])
+    read = by_condition(points.read(config.load(folder / "rig" / "tyre.toml")).points)
     start = Simulation.of(given, turn_slip=False)
     problem = DiagnosisProblem(read, start, stated_noise(read, channels=channels_of(read)))
     candidates, _ = possible(CATALOG, read, start)

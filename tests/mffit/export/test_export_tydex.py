@@ -36,14 +36,14 @@ def project(tmp_path):
 
 def test_points_are_read_back_to_rounding(project, tmp_path):
     written = write_tydex(project.write(), tmp_path / "tydex")
-    source, _ = points.load(configuration.load(project.folder / "tyre.toml"))
+    source = points.read(configuration.load(project.folder / "tyre.toml")).points
     project.config["rig"]["axes"] = "iso"
     entries = project.config["sweep"]
     for entry, path in zip(entries, written, strict=True):
         assert path.stem == entry["file"].removesuffix(".csv")
         entry["file"] = f"../tydex/{path.name}"
     project.config["columns"] = COLUMNS
-    again, _ = points.load(configuration.load(project.write()))
+    again = points.read(configuration.load(project.write())).points
     for name in ("alpha", "gamma", "Fz", "Fy", "Mz", "p", "V", "direction"):
         np.testing.assert_allclose(getattr(again, name), getattr(source, name), rtol=1e-15, err_msg=name)
 
@@ -67,7 +67,7 @@ def test_names_units_and_factors_are_in_the_columns_of_the_format(project, tmp_p
 def said(project) -> dict[str, list[str]]:
     """The remarks of each file."""
     config = configuration.load(project.write())
-    texts = tydex_texts(points.load(config)[0], config)
+    texts = tydex_texts(points.read(config).points, config)
     return {
         name: [line.removeprefix("! ") for line in text.splitlines() if line.startswith("!")]
         for name, text in texts.items()
@@ -98,7 +98,7 @@ def test_a_sweep_of_both_directions_becomes_two_files(project):
     both = pd.concat([forward.assign(direction="forward"), backward.assign(direction="backward")])
     project.add("both.csv", both.sample(frac=1.0, random_state=1).assign(Fy_N=lambda t: t["Fy_N"] + 0.5))
     config = configuration.load(project.write())
-    texts = tydex_texts(points.load(config)[0], config)
+    texts = tydex_texts(points.read(config).points, config)
     assert "both" not in texts
     for way, rows in (("forward", len(forward)), ("backward", len(backward))):
         lines = texts[f"both-{way}"].splitlines()
@@ -108,7 +108,7 @@ def test_a_sweep_of_both_directions_becomes_two_files(project):
 
 def test_the_overall_diameter_is_twice_the_unloaded_radius(project):
     config = configuration.load(project.write())
-    text = tydex_texts(points.load(config)[0], config)["sideslip_1000"]
+    text = tydex_texts(points.read(config).points, config)["sideslip_1000"]
     row = next(line for line in text.splitlines() if line.startswith("OVALLDIA"))
     assert (row[40:50].strip(), float(row[50:])) == ("m", 0.6)
 

@@ -9,7 +9,7 @@ from small_rigs import LEAN, LOADS, SLIP, disc, simulated, truth
 from mffit import config as configuration
 from mffit.fit.agreement import agreement, with_odd_part
 from mffit.parts import split
-from mffit.points import load
+from mffit.points import read
 
 
 def test_a_regression_line_explains_the_square_of_the_correlation():
@@ -31,7 +31,7 @@ def test_only_points_with_a_reading_and_a_model_count():
 def test_the_odd_part_is_compared_where_the_wheel_rolls_forwards(tmp_path):
     """Rolling backwards, the slip part of Fy has the other sign, and a file for turn slip off does not know it."""
     simulated(disc(), tmp_path)
-    points, _ = load(configuration.load(tmp_path / "tyre.toml"))
+    points = read(configuration.load(tmp_path / "tyre.toml")).points
     found = with_odd_part(truth().values, points, split(points))
     forwards = len(LOADS) * (len(SLIP) + len(LEAN) + 3) + 14  # zeros, and the coupled sweep
     assert (found["Fy"].n, found["Mz"].n) == (forwards, forwards)

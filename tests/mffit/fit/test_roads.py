@@ -90,7 +90,7 @@ def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("files")
     virtual_rig.simulate(virtual_rig.load_plan(disc(), folder=SAMPLE), folder, seed=3)
     settings = config.load(folder / "tyre.toml")
-    loaded, _ = points.load(settings)
+    loaded = points.read(settings).points
     known = Known(truth().values, {row.name: "base" for row in TABLE})
     known = known.having(ranges.covered_ranges(loaded), "range").having(given_values(settings.tyre), "given")
     asked = settings.model_copy(update={"normal": NormalTable(camber_max_deg=65.0)})  # beyond the range

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mffit.linearised.inputs import along, inputs_of, sense, settings_of, swept_of
+from mffit.linearised.inputs import along, inputs_of, settings_of, swept_of
 from mffit.points import Points, make_points
 
 UP = np.linspace(-0.1, 0.1, 21)
@@ -61,18 +61,8 @@ def test_where_a_run_stands_along_what_it_sweeps():
     assert along(points, inputs) == pytest.approx(np.tile(np.linspace(0.0, 1.0, 21), 6))
 
 
-def test_temperature_takes_the_place_of_the_sense():
-    back = np.tile(np.r_[np.linspace(-0.1, 0.1, 11), np.linspace(0.1, -0.1, 11)[1:]], 6)
-    moving = programme().replace(alpha=back, continuous=np.ones(126, dtype=bool))
-    last = inputs_of(moving)[-1]
-    assert (last.name, last.averaged) == ("sense", (-1.0, 1.0))
-    senses = sense(moving, dict.fromkeys(range(6), "alpha")).reshape(6, 21)
-    assert np.all(senses[:, :10] == 1.0)
-    assert np.all(senses[:, 11:] == -1.0)
-    assert "sense" not in [
-        one.name for one in inputs_of(moving.replace(continuous=np.zeros(126, dtype=bool)))
-    ]
-    warm = inputs_of(moving.replace(T=np.linspace(40.0, 60.0, 126)))[-1]
+def test_a_prediction_averages_over_the_temperatures_of_a_test():
+    warm = inputs_of(programme(T=np.linspace(40.0, 60.0, 126)))[-1]
     assert warm.name == "T"
     assert warm.averaged == pytest.approx((42.0, 50.0, 58.0))
 

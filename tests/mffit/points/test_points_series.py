@@ -63,7 +63,7 @@ def series(
 
 
 def load(project, **options):
-    return points.load(configuration.load(project.write()), **options)
+    return points.read(configuration.load(project.write()), **options)[:2]
 
 
 def of_file(found: points.Points, name: str) -> points.Points:
@@ -117,7 +117,7 @@ def test_every_point_can_be_left_out_alone_by_its_lines(project, how, seed):
     name, holds = "series.csv", np.random.default_rng(seed).uniform(5.0, 60.0, len(STATIONS))
     project.add(name, series(**{"hold": holds, "seed": seed, **how}))
     config = configuration.load(project.write())
-    own = of_file(points.load(config)[0], name)
+    own = of_file(points.read(config).points, name)
     assert (
         len(own) >= len(STATIONS) - 2
     )  # two rests of 5 and 7 s are shorter than forces need that settle in 2 s
@@ -127,7 +127,7 @@ def test_every_point_can_be_left_out_alone_by_its_lines(project, how, seed):
         less = config.model_copy(
             update={"fit": FitTable(exclude=({"file": name, "lines": lines, "why": "x"},))}
         )
-        left = of_file(points.load(less)[0], name)
+        left = of_file(points.read(less).points, name)
         for channel in ("line", "last_line", "alpha", "Fy", "Mz"):
             np.testing.assert_array_equal(getattr(left, channel), np.delete(getattr(own, channel), k))
 
@@ -142,7 +142,7 @@ def test_a_rest_without_some_of_its_lines_is_one_point(project):
     project.add("series.csv", table)
     config = configuration.load(project.write())
     out = ({"file": "series.csv", "lines": f"{spoilt[0] + 2}-{spoilt[-1] + 2}", "why": "x"},)
-    found, _ = points.load(config.model_copy(update={"fit": FitTable(exclude=out)}))
+    found = points.read(config.model_copy(update={"fit": FitTable(exclude=out)})).points
     own = of_file(found, "series.csv")
     np.testing.assert_allclose(np.degrees(own.alpha), STATIONS, atol=1e-6)
     truth = side_force(np.radians(STATIONS), 0.0, 1500.0)
@@ -238,11 +238,11 @@ def test_means_of_a_moving_sweep_can_be_left_out_alone(project, rows):
         "moving.csv", series(np.array([-8.0, 8.0, -8.0]), hold=1.0, steering=2.0, noise=2.0, rate=100.0)
     )
     config = configuration.load(project.write())
-    own = of_file(points.load(config, continuous=True)[0], "moving.csv")
+    own = of_file(points.read(config, continuous=True).points, "moving.csv")
     assert len(own) > 150
     lines = f"{own.line[rows[0]]}-{own.last_line[rows[-1]]}"
     out = FitTable(exclude=({"file": "moving.csv", "lines": lines, "why": "x"},))
-    left = of_file(points.load(config.model_copy(update={"fit": out}), continuous=True)[0], "moving.csv")
+    left = of_file(points.read(config.model_copy(update={"fit": out}), continuous=True).points, "moving.csv")
     assert left.line.tolist() == np.delete(own.line, rows).tolist()
 
 

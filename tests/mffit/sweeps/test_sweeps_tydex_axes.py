@@ -115,7 +115,7 @@ def read(path: Path, **rig: Any) -> tuple[points.Points, tuple[str, ...]]:
         "columns": columns,
         "sweep": [{"file": path.name}],
     }
-    return points.load(config.load(given, folder=path.parent))
+    return points.read(config.load(given, folder=path.parent))[:2]
 
 
 def errors(found: points.Points, rows: list[dict[str, Any]]) -> np.ndarray:
@@ -190,7 +190,7 @@ def test_horizontal_axes_without_camber_are_iso_and_become_a_project(tmp_path):
     assert content["rig"]["axes"] == "iso"
     assert "as TYDEX prescribes" in text
     assert "FZH, FYH, MZH: horizontal, about the wheel centre" in text or "FYH, FZH, MZH: horizontal" in text
-    found, _ = points.load(config.load(files[0]))
+    found = points.read(config.load(files[0])).points
     true = np.array([np.r_[row["force"], row["moment"][2]] for row in rows]).T
     np.testing.assert_allclose([found.Fx, found.Fy, found.Fz, found.Mz], true, atol=1e-8)
 
@@ -200,7 +200,7 @@ def test_a_leaning_wheel_in_c_is_recognised_by_its_letters(tmp_path):
     path = written(tmp_path / "a.tdx", rows, "C")
     _, files = pipeline.init_from([path], tmp_path / "p", unloaded_radius=R0, nominal_load=3000.0)
     assert "turned with the wheel carrier" in files[0].read_text()
-    assert errors(points.load(config.load(files[0]))[0], rows) == pytest.approx(0.0, abs=1e-8)
+    assert errors(points.read(config.load(files[0])).points, rows) == pytest.approx(0.0, abs=1e-8)
 
 
 def test_the_radius_under_its_tydex_name_is_the_lever_of_moments_about_the_centre(tmp_path):
@@ -210,6 +210,6 @@ def test_the_radius_under_its_tydex_name_is_the_lever_of_moments_about_the_centr
     text = path.read_text(encoding="latin-1").replace(f"{'RL':<10}", f"{'DSTGRWHC':<10}")
     path.write_text(text, encoding="latin-1")
     _, files = pipeline.init_from([path], tmp_path / "p", unloaded_radius=R0, nominal_load=3000.0)
-    found, warnings = points.load(config.load(files[0]))
+    found, warnings = points.read(config.load(files[0]))[:2]
     assert found.Mx == pytest.approx([row["moment"][0] for row in rows], abs=1e-8)
     assert not [sentence for sentence in warnings if "RL_m" in sentence]

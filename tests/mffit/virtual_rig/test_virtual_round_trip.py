@@ -13,7 +13,7 @@ from mffit.virtual_rig import load_plan, simulate
 def read_back(content, folder, tmp_path):
     def points_of(continuous: bool = False, **changes) -> points.Points:
         simulate(load_plan(content | changes, folder=folder), tmp_path / "out")
-        return points.load(config.load(tmp_path / "out" / "tyre.toml"), continuous=continuous)[0]
+        return points.read(config.load(tmp_path / "out" / "tyre.toml"), continuous=continuous).points
 
     return points_of
 

@@ -73,8 +73,8 @@ def test_the_corrected_project_reads_the_true_points(folder, original):
     after = {path.name: path.read_bytes() for path in folder.iterdir()}
     assert set(after) - set(before) == {"tyre.toml"}
     assert {name: after[name] for name in before} == before
-    ours, _ = points.load(config.load(path))
-    theirs, _ = points.load(config.load(original))
+    ours = points.read(config.load(path)).points
+    theirs = points.read(config.load(original)).points
     for name in before:
         mine, true = (x.Fy[np.array(x.files)[x.file] == name] for x in (ours, theirs))
         assert len(mine) >= len(true) > 10  # the original leaves one out
@@ -339,7 +339,7 @@ def test_a_recording_is_added_to_an_open_project(growing, original, written):
         assert (checked["axes"], checked["points"] > 5) == (["iso"], True)
         assert growing.read_bytes() == before
         assert client.post(f"{client.home}add", json=choice).status_code == 200
-        ours, theirs = (points.load(config.load(path))[0] for path in (growing, original))
+        ours, theirs = (points.read(config.load(path)).points for path in (growing, original))
         mine, true = (x.Fy[np.array(x.files)[x.file] == "camber_900.csv"] for x in (ours, theirs))
         np.testing.assert_allclose(np.sort(mine), np.sort(true), atol=1e-6)
         added = [line for line in growing.read_bytes().splitlines() if line not in before.splitlines()]
