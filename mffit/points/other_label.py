@@ -13,7 +13,6 @@ from scipy.special import chdtrc, chdtri, stdtrit
 
 from mffit.constants import EXPLAINED_SHARE, FALSE_ALARM
 from mffit.points import constants, levels
-from mffit.points.clock import sense
 from mffit.points.like import MeanReadings, conditions, mean_readings, noise, rolling
 from mffit.points.points import Points, of_si
 from mffit.quantities import CONDITIONS
@@ -56,9 +55,9 @@ class OtherLabel(NamedTuple):
 def other_labels(points: Points) -> tuple[OtherLabel, ...]:
     """The sweeps whose side forces agree with those of other sweeps at another load, camber or pressure, and not with their own.
 
-    All other settings are alike, and so is the sense in which a sweep moves, because forces lag. That the own label is wrong is
-    seen from other sweeps at it, or, without any, from what the change of label does under other conditions; beyond chance, with
-    every label of every sweep counted as a candidate, and beyond what repeated sweeps differ by.
+    All other settings are alike. That the own label is wrong is seen from other sweeps at it, or, without any, from what the
+    change of label does under other conditions; beyond chance, with every label of every sweep counted as a candidate, and beyond
+    what repeated sweeps differ by, to which the lag of the force adds where some go up and some down.
     """
     used = rolling(points)
     u = noise(used)
@@ -213,11 +212,10 @@ class _Labelled:
 
 
 def _keys(setting: str, points: Points) -> np.ndarray:
-    """Per point (n, 8) what must be alike to compare sweeps under a setting: the labels of the others first, sideslip last."""
+    """Per point (n, 7) what must be alike to compare sweeps under a setting: the labels of the others first, sideslip last."""
     others = [(name, kind) for name, (_, kind) in LABELS.items() if name != setting]
     alike = conditions(points, others)
-    rising = sense(points) * points.continuous
-    return np.column_stack([alike[:, : len(others)], points.setup, rising, alike[:, len(others) :]])
+    return np.column_stack([alike[:, : len(others)], points.setup, alike[:, len(others) :]])
 
 
 def _differences(
