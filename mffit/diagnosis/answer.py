@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.config import axis_signs
+from mffit.config import Config, axis_signs
 from mffit.diagnosis import constants, wording
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.explanation import Explanation
@@ -36,10 +36,10 @@ from tir.mode import with_turn_slip
 from tir.parameters import BY_NAME
 
 
-def named_effects(found: Explanation, given: DiagnosisProblem) -> tuple[AcceptedEffect, ...]:
+def named_effects(config: Config, found: Explanation, given: DiagnosisProblem) -> tuple[AcceptedEffect, ...]:
     """The records of all accepted effects, each judged together with the others."""
     u = _stated_u(found, found)
-    return tuple(_found(found, effect, u, given) for effect in found.chosen.effects)
+    return tuple(_found(config, found, effect, u, given) for effect in found.chosen.effects)
 
 
 def answered(
@@ -152,13 +152,13 @@ def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier,
 
 
 def _found(
-    found: Explanation, effect: Effect, u: Mapping[str, float], given: DiagnosisProblem
+    config: Config, found: Explanation, effect: Effect, u: Mapping[str, float], given: DiagnosisProblem
 ) -> AcceptedEffect:
     """The record of one accepted effect, judged together with all other accepted ones; ``u`` by number."""
     problem, chosen = found.problem, found.chosen
     tied, _, confidence, together = _judged(found, effect)
     noise = {name: problem.noise.typical(name) for name in problem.channels}
-    separations = [separation(problem.points, chosen, t, noise) for t in tied]
+    separations = [separation(config, problem.points, chosen, t, noise) for t in tied]
     with_it = _with_earlier(found, effect)
     numbers = found.refined.numbers
     return AcceptedEffect(

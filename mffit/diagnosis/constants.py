@@ -165,15 +165,6 @@ USUAL_MISS_OF_A_FORMULA = Real(
     "Usual smooth structure or bump (1 sigma) over the channel's size: model error of real tyres.",
 )
 SEPARATING_CHI2 = Real(9.0, "-", "Expected chi2 between explanations at which a run is worthwhile: 3 sigma.")
-TIE_RUN_CAMBER = Real(40.0, "deg", "Largest camber of an added camber sweep.")
-TIE_RUN_POINTS = Count(13, "-", "Points of an added sweep.")
-TIE_RUN_OTHER_LOADS = Series((0.5, 1.4), "-", "Added loads over the smallest and the largest load measured.")
-TIE_RUN_LOW_PRESSURE = Real(0.8, "-", "Added pressure over the main one.")
-TIE_RUN_FAST = Real(2.0, "-", "Added speed over the main one.")
-TIE_RUN_WARMER = Real(20.0, "K", "Rise of temperature of an added run.")
-TIE_RUN_LATER = Real(900.0, "s", "Added late runs begin this long after the test.")
-TIE_RUN_STEERED = Real(4.0, "deg", "Sideslip of an added sweep of longitudinal slip.")
-TIE_RUN_WIDE = Real(2.0, "-", "Path radius of an added run over the usual one.")
 
 # Confidence and answer
 TWO_SIGMA = Real(

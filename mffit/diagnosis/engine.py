@@ -68,7 +68,7 @@ def diagnose(
     found, validation, refused = _confirmed(found, given, search)
     found = found if found.further is not None else found.contested()
     rest = (*beyond, *remaining(found))
-    confirmed = Confirmed(found, given, named_effects(found, given), not_accepted(found), rest)
+    confirmed = Confirmed(found, given, named_effects(config, found, given), not_accepted(found), rest)
     done = repair(confirmed, validation, search)
     notes = _notes(search, found, wrong, done, refused)
     before = raw_gap(points if asked.as_read is None else asked.as_read, start, kept, found.scatter)

@@ -134,7 +134,7 @@ def advice(diagnosis: Diagnosis) -> list[str]:
         )
     tied = [one.separation for one in diagnosis.effects if one.separation is not None]
     runs = dict.fromkeys(separation(one) for one in tied if one.worthwhile)
-    found += [f"To decide, add {run}." for run in runs]
+    found += [f"To decide, add this run: {run}." for run in runs]
     if tied and not runs:
         found.append("No usual run decides between them at this size.")
     return found

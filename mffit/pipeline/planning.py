@@ -12,6 +12,7 @@ from threadpoolctl import threadpool_limits
 
 from mffit import as_json, fit, planning
 from mffit import config as configuration
+from mffit.additions import Addition, PlannedRun, addition_named
 from mffit.config import Config
 from mffit.csv_tables import write_csv
 from mffit.errors import InputError
@@ -23,15 +24,11 @@ from mffit.pipeline.inputs import inputs_of, read_base
 from mffit.pipeline.measuring import epsilon_gamma, measure
 from mffit.pipeline.refining import spin_of_model, undistorted
 from mffit.planning import (
-    Addition,
     Goal,
     NextRun,
     Plan,
-    PlannedRun,
-    addition_named,
     next_run,
     read_goal,
-    wording,
 )
 from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT
 from mffit.planning.plan import U
@@ -203,7 +200,7 @@ def additions(config: Config, runs: Sequence[PlannedRun]) -> str:
     usual = configuration.path_curvature(config.rig)
     lines = ["# Append to tyre.toml once the sheets are filled in; the file names are those of this folder."]
     for run in runs:
-        lines += ["", f"# {wording.title(run)}"]
+        lines += ["", f"# {run.title}"]
         lines += ["[[sweep]]", f'file = "{run.name}.csv"', *_place(run.points, usual)]
     return "\n".join(lines) + "\n"
 

@@ -6,17 +6,16 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
+from mffit.additions import Addition, PlannedRun, candidates
+from mffit.additions.constants import WORTHWHILE_FALL
 from mffit.as_json import keys
 from mffit.brief import Brief
 from mffit.config import Config
 from mffit.fit import FitResult
 from mffit.fit.coverage import StageCoverage
 from mffit.measured import Contribution, Measured, adding_to_camber
-from mffit.planning import constants
-from mffit.planning.additions import Addition
 from mffit.planning.goals import Goal
 from mffit.planning.prospect import Prospect
-from mffit.planning.runs import PlannedRun, candidates
 from mffit.points import Points
 from mffit.progress import Progress, silent
 
@@ -187,12 +186,12 @@ def _best(
 ) -> Sequence[PlannedRun]:
     """The best run or pair of runs to add; empty if none lowers the uncertainty enough."""
     after = [u([*chosen, *more]) for more in possible]
-    if not min(after, default=float("inf")) < (1.0 - constants.WORTHWHILE_FALL) * u(chosen):
+    if not min(after, default=float("inf")) < (1.0 - WORTHWHILE_FALL) * u(chosen):
         return ()
     equally_good = [
         (sum(run.cost for run in more), then, k)
         for k, (more, then) in enumerate(zip(possible, after, strict=True))
-        if then <= (1.0 + constants.WORTHWHILE_FALL) * min(after)
+        if then <= (1.0 + WORTHWHILE_FALL) * min(after)
     ]
     return possible[min(equally_good)[2]]
 
@@ -202,6 +201,6 @@ def _without_superfluous(u: U, chosen: Sequence[PlannedRun]) -> list[PlannedRun]
     kept = list(chosen)
     for run in chosen:
         fewer = [other for other in kept if other is not run]
-        if fewer and u(fewer) <= (1.0 + constants.WORTHWHILE_FALL) * u(kept):
+        if fewer and u(fewer) <= (1.0 + WORTHWHILE_FALL) * u(kept):
             kept = fewer
     return kept

@@ -8,6 +8,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from mffit.additions import PlannedRun, candidates, largest_slip, new_setups, swept
 from mffit.config import Config
 from mffit.constants import ANGLES_OF_A_CURVE, COVERAGE_FACTOR_95
 from mffit.fit import FitResult
@@ -21,7 +22,6 @@ from mffit.measured import Measured, unspun
 from mffit.numbers import Numbers
 from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, ROAD, Goal
 from mffit.planning.road import RoadBand
-from mffit.planning.runs import PlannedRun, candidates, largest_slip, new_setups, swept
 from mffit.points import Points, levels, main_pressure, make_points
 from mffit.points.points import concatenate
 from mffit.rig import Simulation

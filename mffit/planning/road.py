@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.additions import PlannedRun
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import FitResult
 from mffit.linearised import LinearisedChannel
 from mffit.linearised.gaussian import Directions, Informed
-from mffit.planning.runs import PlannedRun
 from mffit.points import Points
 from mffit.points.points import concatenate
 from mffit.prediction.predictor import root_with_held

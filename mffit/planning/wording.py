@@ -5,31 +5,22 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from mffit.additions import BY_ID
+from mffit.additions.constants import WORTHWHILE_FALL
 from mffit.fit.by_hand import HELD_BY_HAND
-from mffit.planning import constants
-from mffit.planning.additions import BY_ID
 from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, ROAD
 from mffit.planning.plan import Identified, NextRun, Plan
-from mffit.planning.runs import PlannedRun
-from mffit.quantities import CONDITIONS, DIRECT
+from mffit.quantities import DIRECT
 from mffit.rounding import decimals_of
 
 EPS = DIRECT["epsilon_gamma"].ascii
-LOAD = CONDITIONS["Fz_N"]
 BACKWARD_CAMBER = BY_ID["backward-camber"]
-
-
-def title(run: PlannedRun) -> str:
-    """The run in a few words."""
-    more = f", {run.held_deg:g} deg" if run.held_deg else ""
-    more += f", {CONDITIONS['p_kPa'].of(run.pressure_kPa)}" if run.pressure_kPa else ""
-    return f"{run.addition.title}, {LOAD.of(run.load)}{more}"
 
 
 def headline(plan: Plan) -> str:
     """The plan in one sentence."""
     if not plan.steps:
-        least = f"{100 * constants.WORTHWHILE_FALL:g} %"
+        least = f"{100 * WORTHWHILE_FALL:g} %"
         return (
             f"None of the runs tried lowers {plan.goal.label} by {least} or more; it is {shown(plan, plan.now)}. The budget "
             "shows what limits it."
@@ -55,7 +46,7 @@ def shown(plan: Plan | NextRun, u: float) -> str:
 def next_sentence(found: NextRun) -> str:
     """The most informative run, and the uncertainty that it would reach."""
     run, step = found.step.run, found.step
-    return f"{title(run)}, {run.cost} points: {found.goal.label} from {shown(found, step.before)} to {shown(found, step.after)}"
+    return f"{run.title}, {run.cost} points: {found.goal.label} from {shown(found, step.before)} to {shown(found, step.after)}"
 
 
 ESTIMATES = {

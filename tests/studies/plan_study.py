@@ -22,8 +22,9 @@ from small_rigs import SAMPLE, built, disc, truth
 
 import tir
 from mffit import virtual_rig
+from mffit.additions import PlannedRun, addition_named
 from mffit.pipeline.planning import plan_of
-from mffit.planning import Goal, Plan, PlannedRun, addition_named, read_goal
+from mffit.planning import Goal, Plan, read_goal
 from mffit.results import BuildResult
 from mffit.scatter import rms
 

@@ -93,5 +93,5 @@ def test_a_tie_is_named_with_its_channels_and_the_run_that_ends_it(tmp_path):
     where = found.where[0]
     assert where.channel == "Mz"
     said = " ".join(text.diagnosis_summary(found).split())
-    assert "a backward sweep of longitudinal slip at 4200 N (expected chi2" in said
+    assert "sweep of longitudinal slip rolled backwards, 4200 N (expected chi2" in said
     assert wording.place(where.region) == ["longitudinal slip 0.08 to 0.2"]

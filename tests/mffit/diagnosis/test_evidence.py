@@ -9,17 +9,20 @@ import numpy as np
 import pytest
 from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
 
+from mffit import config as configuration
+from mffit.config.loading import STAND_IN
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.priors import log_prior
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.selection import Contest
 from mffit.diagnosis.stated import stated_noise
-from mffit.diagnosis.ties import candidate_runs, separation
+from mffit.diagnosis.ties import Separation, separation
 from mffit.diagnosis.validation import gap, validate
 from mffit.effects import CATALOG, Effect, Free
 from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
+from tir import Tyre
 
 BY_ID = {effect.id: effect for effect in CATALOG}
 OFFSET = BY_ID["loadcell-offset-fy"]
@@ -151,72 +154,51 @@ def test_a_coefficient_at_zero_is_likelier_to_be_missing():
         assert log_prior(BY_ID[name], Simulation.of(TYRE)) == BY_ID[name].prior
 
 
+DISC = configuration.load(
+    {"tyre": {"name": "t", **STAND_IN}, "rig": {"path_radius": 1.323}, "sweep": [{"file": "a.csv"}]}
+)
+NOISE = {"Fy": U_FY, "Mz": U_MZ}
+
+
+def between(points: Points, tyre: Tyre = TYRE, **faults: float) -> Separation:
+    """The run that separates a tyre and rig errors from the tyre of the programme on a rig without errors."""
+    null = problem(points).null
+    return separation(DISC, points, null, replace(null, state=Simulation.of(tyre, Faults(**faults))), NOISE)
+
+
 def test_expected_chi2_between_two_offsets_is_their_square_at_every_point():
-    """The runs with most points are best: 13 sideslip angles, (9/6)^2 each."""
+    """The two differ alike in all runs; the shortest has 9 points: (9/6)^2 and (0.3/0.6)^2 each."""
     points = read(programme())
+    assert between(points, F0_N=9.0, M0_Nm=0.3).chi2 == pytest.approx(9 * (1.5**2 + 0.5**2))
     null = problem(points).null
     other = replace(null, state=Simulation.of(TYRE, Faults(F0_N=9.0, M0_Nm=0.3)))
-    best = separation(points, null, other, {"Fy": U_FY, "Mz": U_MZ})
-    assert best.chi2 == pytest.approx(13 * (1.5**2 + 0.5**2))
-    assert separation(points, null, other, {"Fy": U_FY, "Mz": float("nan")}).chi2 == pytest.approx(
-        13 * 1.5**2
-    )
+    only_force = separation(DISC, points, null, other, NOISE | {"Mz": math.nan})
+    assert only_force.chi2 == pytest.approx(9 * 1.5**2)
 
 
-def test_the_usual_runs_have_the_conditions_of_their_names():
-    points = read(programme(T=30.0))
-    runs = dict(candidate_runs(points))
-    assert len(runs) == len(candidate_runs(points)) == 14
-    assert all(f"{added.Fz[0]:.0f} N" in name and np.ptp(added.Fz) == 0.0 for name, added in runs.items())
-    assert not any("longitudinal slip" in name for name in runs)
-
-    def one(*words: str) -> Points:
-        (found,) = (added for name, added in runs.items() if all(word in name for word in words))
-        return found
-
-    loads = np.unique([added.Fz[0] for added in runs.values()])
-    assert (loads[0], loads[-1]) == pytest.approx((500.0, 2520.0))
-    assert np.all((loads[1:-1] >= 1000.0) & (loads[1:-1] <= 1800.0))
-    assert np.all(one("backward sideslip").direction == -1)
-    assert np.all(one("backward camber").direction == -1)
-    assert np.ptp(one("backward camber").gamma) > 1.0
-    assert np.all(one("turned on its rim").mount == -1)
-    assert np.degrees(one("at 20 deg camber").gamma) == pytest.approx(20.0)
-    assert one("0.8 of the pressure").p == pytest.approx(200e3)
-    np.testing.assert_allclose(one("2 times the speed").V, 12.0)
-    np.testing.assert_allclose(one("20 K warmer").T, 50.0)
-    assert np.all(one("end of the test").t > points.t.max() + 600.0)
-    assert np.all(one("sideslip", "straight path").phi_t == 0.0)
-    assert np.all(one("camber", "straight path").phi_t == 0.0)
-    assert one("2 times the radius").phi_t == pytest.approx(-0.5 / 1.323)
-    for words in ("backward sideslip", "turned on its rim", "2 times the speed"):
-        assert np.degrees(np.max(np.abs(one(words).alpha))) == pytest.approx(8.0)
-    assert np.degrees(np.max(np.abs(one("camber sweep to 40 deg").gamma))) == pytest.approx(40.0)
-    straight = dict(candidate_runs(points.replace(phi_t=0.0)))
-    assert len(straight) == 11
-    assert not any("path" in name for name in straight)
+@pytest.mark.parametrize(
+    ("faults", "words"),
+    [
+        ({"k_V_per_mps": 0.01}, "2 times the speed"),
+        ({"k_T_grip_per_K": 0.01, "T_ref_degC": 25.0}, "20 K warmer"),
+        ({"k_t_per_s": 1e-5}, "at the end of the test"),
+    ],
+)
+def test_what_changes_with_a_condition_is_seen_where_it_is_another(faults, words):
+    assert words in between(read(programme()), **faults).run
 
 
-def test_runs_over_longitudinal_slip_are_proposed_where_it_was_run():
-    points = read(programme())
-    slips = dict(candidate_runs(points.replace(kappa=np.resize([-0.1, 0.0, 0.1], len(points)))))
-    driven = {name: added for name, added in slips.items() if "longitudinal slip" in name}
-    assert len(driven) == 6
-    assert all(bool(np.any(added.kappa)) is (name in driven) for name, added in slips.items())
-    for name, added in driven.items():
-        assert (added.kappa.min(), added.kappa.max()) == pytest.approx((-0.1, 0.1))
-        assert np.all(added.direction == (-1 if "backward" in name else 1))
-        assert np.all(added.mount == (-1 if "turned on its rim" in name else 1))
-        assert np.degrees(added.alpha) == pytest.approx(4.0 if "4 deg sideslip" in name else 0.0)
-        assert np.degrees(added.gamma) == pytest.approx(20.0 if "20 deg camber" in name else 0.0)
+def test_a_pressure_is_proposed_for_what_depends_on_it():
+    found = between(read(programme()), TYRE.replace(PPY1=TYRE["PPY1"] + 0.5))
+    assert "another pressure" in found.run
+    assert found.worthwhile
 
 
 def test_runs_can_be_added_to_a_continuous_recording():
     """The added points are steady, the recorded ones are not."""
-    points = read(programme()).replace(continuous=True, time=np.linspace(0.0, 99.0, len(programme())))
-    runs = candidate_runs(points)
-    assert len(runs) == len(candidate_runs(read(programme())))
-    assert not any(added.continuous.any() or np.isfinite(added.time).any() for _, added in runs)
+    points = read(programme())
+    moving = points.replace(continuous=True, time=np.linspace(0.0, 99.0, len(points)))
+    assert between(moving, F0_N=9.0).chi2 == pytest.approx(9 * 1.5**2)
 
 
 def test_the_gap_in_numbers():

@@ -173,7 +173,7 @@ def test_advice_names_the_file_the_rig_and_the_run(camber):
         "The rest is your rig: sideslip axis misaligned. Correct these readings, or mend the rig"
     )
     assert beside.startswith("Add tyre temperature as a term in addition to the file")
-    assert run.startswith("To decide, add a repeated sideslip sweep at 1400 N")
+    assert run.startswith("To decide, add this run: a repeated sideslip sweep at 1400 N")
 
 
 @pytest.mark.parametrize(

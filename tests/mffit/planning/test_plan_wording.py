@@ -9,9 +9,10 @@ from types import SimpleNamespace
 import pytest
 
 from mffit import as_json
+from mffit.additions import BY_ID, PlannedRun
 from mffit.fit.coverage import StageCoverage
 from mffit.measured import Contribution
-from mffit.planning import BY_ID, Identified, Plan, PlannedRun, PlanStep, read_goal, wording
+from mffit.planning import Identified, Plan, PlanStep, read_goal, wording
 
 IDENTIFIED = Identified(
     cover=(
@@ -66,11 +67,11 @@ def test_every_coefficient_of_a_stage_has_one_status():
 
 
 def test_titles_name_load_camber_and_pressure():
-    assert wording.title(RUN) == "sideslip sweeps at camber of both signs, 1400 N, 10 deg"
+    assert RUN.title == "sideslip sweeps at camber of both signs, 1400 N, 10 deg"
     pressed = PlannedRun(BY_ID["pressure"], 900.0, points=[], pressure_kPa=300.0)
-    assert wording.title(pressed) == "sideslip and camber sweep at another pressure, 900 N, 300 kPa"
+    assert pressed.title == "sideslip and camber sweep at another pressure, 900 N, 300 kPa"
     assert (
-        wording.title(PlannedRun(BY_ID["second-radius"], 900.0, points=[]))
+        PlannedRun(BY_ID["second-radius"], 900.0, points=[]).title
         == "zeros both ways at 0.7 of the path radius, 900 N"
     )
 

@@ -15,13 +15,13 @@ import pytest
 from small_rigs import LOADS, SAMPLE, built, disc, truth
 
 import mffit
+from mffit.additions import ADDITIONS, addition_named, candidates
 from mffit.cli import main
 from mffit.errors import InputError
 from mffit.pipeline.planning import additions, plan_of, sheet, write_plan
 from mffit.pipeline.refining import finite_spin_bias
-from mffit.planning import ADDITIONS, addition_named, read_goal, wording
+from mffit.planning import read_goal, wording
 from mffit.planning.prospect import Prospect
-from mffit.planning.runs import candidates
 from mffit.points import concatenate
 from mffit.report.text import plan_summary
 from mffit.rig import Simulation
@@ -372,6 +372,6 @@ def test_page_numbers_and_sheets_are_written(plan, tmp_path):
     assert written["u_then"] == plan.then
     assert written["runs"][0]["kind"] == "other-side"
     page = (tmp_path / "plan" / "plan.html").read_text()
-    assert wording.title(plan.steps[0].run) in page
+    assert plan.steps[0].run.title in page
     assert (tmp_path / "plan" / "runs" / f"{plan.steps[0].run.name}.csv").is_file()
-    assert wording.title(plan.steps[0].run) in plan_summary(plan)
+    assert plan.steps[0].run.title in plan_summary(plan)

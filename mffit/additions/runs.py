@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
 import numpy as np
 
+from mffit.additions import constants
+from mffit.additions.kinds import ADDITIONS, Addition, LineOfPoints
 from mffit.as_json import keys
 from mffit.config import Config, SweepTable, setup_names
 from mffit.constants import CAMBER_OF_SLOPES
 from mffit.measured import was_coupled
-from mffit.planning import constants
-from mffit.planning.additions import ADDITIONS, Addition, LineOfPoints
 from mffit.points import Points, levels, main_path, main_pressure
 from mffit.points.points import concatenate
-from mffit.quantities import CHANNELS
+from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.rig import reference_speed
 from mffit.scatter import finite_median
 
@@ -45,21 +45,26 @@ class PlannedRun:
         pressure = f"-{self.pressure_kPa:.0f}kPa" if self.pressure_kPa else ""
         return f"{self.addition.id}-{self.load:.0f}N{angle}{pressure}"
 
+    @property
+    def title(self) -> str:
+        """The run in a few words."""
+        more = f", {self.held_deg:g} deg" if self.held_deg else ""
+        more += f", {CONDITIONS['p_kPa'].of(self.pressure_kPa)}" if self.pressure_kPa else ""
+        return f"{self.addition.title}, {CONDITIONS['Fz_N'].of(self.load)}{more}"
 
-keys(
-    PlannedRun,
-    "name kind=addition.id title reason=addition.reason points=cost",
-    title="mffit.planning.wording.title",
-)
+
+keys(PlannedRun, "name kind=addition.id title reason=addition.reason points=cost")
 
 
-def candidates(config: Config, points: Points, unspun: float | None = None) -> tuple[PlannedRun, ...]:
+def candidates(
+    config: Config, points: Points, unspun: float | None = None, kinds: Sequence[Addition] = ADDITIONS
+) -> tuple[PlannedRun, ...]:
     """Every run that this rig could add to these points; ``unspun`` is the camber [rad] at which the path gives no spin."""
     programme = _Programme(config, points, unspun)
     here = "disc" if config.rig.on_disc else "belt"
     return tuple(
         run
-        for addition in ADDITIONS
+        for addition in kinds
         if addition.rig in ("any", here)
         for load in programme.loads_of(addition)
         for run in _runs_of(programme, addition, load)
@@ -143,7 +148,7 @@ class _Programme:
         phi_t = main_path(self.main) / addition.radius
         usual = np.flatnonzero(self.main.phi_t == main_path(self.main))[0]
         given: dict[str, Any] = {
-            "alpha": 0.0, "gamma": 0.0, "kappa": 0.0, "Fz": load, "p": p, "V": reference_speed(self.main),
+            "alpha": 0.0, "gamma": 0.0, "kappa": 0.0, "Fz": load, "p": p, "V": addition.speed * reference_speed(self.main),
             "phi_t": phi_t, "direction": line.direction, "mount": addition.mount,
             "line": 0, "sweep": 0, "file": 0, "sweep_names": ("planned",), "files": ("",),
             "setup": 0, "setups": (setup_on(self.config, self.points, phi_t),),
@@ -152,6 +157,8 @@ class _Programme:
         unknown = dict.fromkeys((*CHANNELS, "t", "time", "iteration"), np.nan)
         uncertain = (*(f"u_{name}" for name in CHANNELS), "T")
         typical = {name: finite_median(getattr(self.points, name)) for name in uncertain}
+        typical["T"] += addition.warmer
+        typical["t"] = np.max(np.nan_to_num(self.points.t)) + addition.later
         return self.main.select(np.full(len(angles), usual)).replace(**(given | unknown | typical))
 
 

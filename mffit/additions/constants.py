@@ -1,10 +1,9 @@
-"""Numbers of judgement of ``mffit plan``."""
+"""Numbers of judgement of the runs that a rig could add: their set-points."""
 
 from __future__ import annotations
 
 from tir.constant import Real, Series
 
-# Set-points of the runs that are tried
 SWEEP_SHARES = Series(
     (-1.0, -0.75, -0.5, -0.375, -0.25, -0.125, -0.0625, 0.0, 0.0625, 0.125, 0.25, 0.375, 0.5, 0.75, 1.0),
     "-",
@@ -26,8 +25,10 @@ NEW_PRESSURE_FACTORS = Series((0.8, 1.2), "-", "Proposed new pressures over the 
 SECOND_RADIUS_FACTOR = Real(
     0.7, "-", "Second path radius over the usual one: still on the disc, but clearly different."
 )
+FASTER = Real(2.0, "-", "Speed of an added run over the usual one.")
+WARMER = Real(20.0, "K", "Temperature of an added run above the usual one.")
+LATER = Real(900.0, "s", "Time after the end of the test at which a run is repeated.")
 
-# The list
 WORTHWHILE_FALL = Real(
     0.05,
     "-",

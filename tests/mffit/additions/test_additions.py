@@ -10,8 +10,7 @@ from small_rigs import LOADS, disc, flat, simulated
 
 from mffit import config as configuration
 from mffit import points as ingestion
-from mffit.planning import ADDITIONS, candidates
-from mffit.planning.runs import swept
+from mffit.additions import ADDITIONS, SEPARATING, candidates, swept
 from mffit.points import concatenate
 
 DOCS = Path(__file__).parents[3] / "docs" / "plan.md"
@@ -30,7 +29,7 @@ def programme(tmp_path_factory):
     folder = tmp_path_factory.mktemp("programme")
     simulated(disc(LOADS[:2], rolling_radius=[]), folder)
     config = configuration.load(folder / "tyre.toml")
-    return config, ingestion.load(config)[0]
+    return config, ingestion.read(config).points
 
 
 @pytest.fixture
@@ -38,7 +37,7 @@ def longer_programme(tmp_path):
     """A flat track's programme with a rolling wheel at a higher load and points of a step of slip."""
     simulated(flat(), tmp_path)
     config = configuration.load(tmp_path / "tyre.toml")
-    points = ingestion.load(config)[0]
+    points = ingestion.read(config).points
     loads = {round(float(load)) for load in np.unique(np.round(points.Fz))}
     some = points.select(np.arange(3))
     rolling = some.replace(alpha=0.0, gamma=0.0, kappa=0.001, Fz=1.6 * np.max(points.Fz))
@@ -97,6 +96,20 @@ def test_coupled_sweeps_lean_to_both_sides_where_the_programme_has_none(runs):
         assert np.degrees(run.points.gamma) == pytest.approx([-run.held_deg] * 15 + [run.held_deg] * 15)
 
 
+def test_runs_that_separate_effects_differ_in_one_condition(programme):
+    config, points = programme
+    points = points.replace(T=30.0, t=np.arange(float(len(points))))
+    found = {run.addition.id: run.points for run in candidates(config, points, kinds=SEPARATING)}
+    usual = np.median(points.V)
+    for kind, run in found.items():
+        assert np.degrees(run.alpha) == pytest.approx(SLIP * SHARES)
+        assert set(run.direction) == {-1 if kind == "backward" else 1}
+        np.testing.assert_allclose(run.V, usual * (2.0 if kind == "fast" else 1.0))
+        np.testing.assert_allclose(run.T, 50.0 if kind == "warm" else 30.0)
+        np.testing.assert_allclose(run.t, len(points) - 1.0 + 900.0 if kind == "late" else np.nan)
+    assert set(found) == {"backward", "fast", "warm", "late"}
+
+
 def test_pressures_are_a_fifth_lower_and_higher(runs):
     assert [round(run.pressure_kPa) for run in runs["pressure"]] == [200, 300, 200, 300]
     for run in runs["pressure"]:
@@ -117,7 +130,7 @@ def test_without_a_camber_sweep_small_cambers_are_proposed(programme):
 def test_a_flat_track_has_no_runs_about_turn_slip(tmp_path):
     simulated(flat(), tmp_path)
     config = configuration.load(tmp_path / "tyre.toml")
-    found = {run.addition.id for run in candidates(config, ingestion.load(config)[0])}
+    found = {run.addition.id for run in candidates(config, ingestion.read(config).points)}
     driven = {"drive", "combined", "drive-camber", "drive-pressure"}
     assert found == {"flipped", "sideslip", "camber", "coupled", "pressure", "load", *driven}
 

@@ -1,15 +1,16 @@
-"""The kinds of runs that ``mffit plan`` may add to a programme, one record each."""
+"""The kinds of runs that a rig could add to a programme, one record each."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Literal, NamedTuple
 
+from mffit.additions import constants
 from mffit.constants import CAMBER_OF_SLOPES
 from mffit.errors import InputError
-from mffit.planning import constants
 
 
 class LineOfPoints(NamedTuple):
@@ -39,6 +40,9 @@ class Addition:
     held_deg: Sequence[float] = (0.0,)  #: values of the held angle, one run each
     unspun: bool = False  #: the held camber is that at which the path gives no spin
     pressures: Sequence[float] = (1.0,)  #: pressures over the programme's pressure, one run each
+    speed: float = 1.0  #: over the programme's
+    warmer: float = 0.0  #: above the programme's temperature [K]
+    later: float = math.nan  #: after the end of the test [s]; NaN: at no stated time
 
 
 _NEW_SETUP = (
@@ -191,7 +195,52 @@ ADDITIONS = (
         pressures=constants.NEW_PRESSURE_FACTORS,
     ),
 )
-"""In the order of trial; among equally good runs with equally many points the first is taken."""
+"""Those of ``mffit plan`` in the order of trial; among equally good runs with equally many points the first is taken."""
+
+_apart = partial(Addition, loads="nominal", lines=_SIDESLIP)
+
+SEPARATING = (
+    _apart(
+        id="backward",
+        title="sideslip sweep rolled backwards",
+        reason="Rolled backwards, forces of the tyre change sign that errors of the rig keep.",
+        lines=(LineOfPoints("alpha", _SHARES, direction=-1),),
+    ),
+    _apart(
+        id="fast",
+        title=f"sideslip sweep at {constants.FASTER:g} times the speed",
+        reason="Only effects of speed change with it.",
+        speed=constants.FASTER,
+    ),
+    _apart(
+        id="warm",
+        title=f"sideslip sweep with the tyre {constants.WARMER:g} K warmer",
+        reason="Only effects of temperature change with it.",
+        warmer=constants.WARMER,
+    ),
+    _apart(
+        id="late",
+        title="sideslip sweep at the end of the test",
+        reason="Drift and wear grow with time and distance.",
+        later=constants.LATER,
+    ),
+    _driven(
+        id="backward-drive",
+        title="sweep of longitudinal slip rolled backwards",
+        reason="Rolled backwards, drag of brake and bearings changes sign; a zero of the load cell keeps it.",
+        loads="nominal",
+        lines=(LineOfPoints("kappa", _SHARES, direction=-1),),
+    ),
+    _driven(
+        id="flipped-drive",
+        title="sweep of longitudinal slip with the tyre turned on its rim",
+        reason="Turned on its rim, the tyre's asymmetry changes sign; every rig error keeps its sign.",
+        loads="nominal",
+        lines=_DRIVE,
+        mount=-1,
+    ),
+)
+"""Kinds that inform little about the tyre, and separate its effects from those of rig and environment."""
 BY_ID: Mapping[str, Addition] = {addition.id: addition for addition in ADDITIONS}
 
 
