@@ -20,11 +20,28 @@ MISFIT_AT_NOISE = Real(
 EXPLAINED_SHARE = Real(
     1.0 / 3.0, "-", "A known mistake explains an error if undoing it leaves less than this share."
 )
+MOST = Real(0.5, "-", "Share from which it is most of a range or of a misfit, or likelier than not.")
 LIKENESS_OF_MISSPELT = Real(0.6, "-", "Similarity (difflib) from which a key or heading counts as misspelt.")
 LONGEST_QUOTE = Count(60, "characters", "Longest quotation of a file in a message.")
 COVERAGE_FACTOR_95 = Real(1.959964, "-", "Coverage factor of a 95 % interval of a normal distribution.")
+TWO_SIGMA = Real(
+    2.0,
+    "-",
+    "Standard deviations within which a size lies, beyond which a number of an effect has changed, and a channel is worse.",
+)
+CERTAIN_SIGMA = Real(
+    5.0,
+    "-",
+    "Standard deviations beyond which chance explains neither a misfit nor a bound that is hit. Half its square is the log "
+    "evidence that proves a model error.",
+)
 FALSE_ALARM = Real(
     1e-3, "-", "Probability that chance alone makes a sound reading or rig conspicuous, per question."
+)
+FEWEST = Count(
+    4,
+    "-",
+    "Fewest readings, set-points or sweeps that show something: a slope, a curve, a copy, which one is odd.",
 )
 AT_BOUND_SHARE = Real(
     1e-4, "-", "Distance from a bound, over the width of the bounds, that counts as at the bound."
@@ -41,16 +58,15 @@ ROWS_AT_ONCE = Count(
 LOOKS_AT_LIMITS = Count(
     200, "-", "Most times a step is computed again because it meets a limit or a bound; 5 to 50 are usual."
 )
+WEAKEST_DIRECTION = Real(
+    1e-3,
+    "-",
+    "Singular value over the largest below which readings do not determine a combination of numbers.",
+)
 STRAIGHT = Real(
     0.4,
     "deg",
     "Sideslip as read within which a wheel runs straight, and within which two angles are one level of a programme.",
-)
-LARGEST_CAMBER_REDUCTION = Real(
-    0.9,
-    "-",
-    "Largest eps_gamma that PECP2 may reach within the loads, or that zeros without camber sweeps may suggest; beyond it the "
-    "camber stiffness is wrong.",
 )
 VISIBLE_TEMPERATURE = Real(
     3.0, "K", "Smallest difference of temperature whose effect exceeds the noise: grip changes by 1 %."
@@ -91,7 +107,6 @@ PREDICTION_FALSE_ALARM = Real(
 LEAST_PREDICTED_SHARE = Real(
     0.02, "-", "Share of the misfit that a candidate must remove; a channel that loses less is no worse."
 )
-WORSE_PREDICTION = Real(2.0, "-", "Standard errors over the sweeps by which a prediction counts as worse.")
 FEWEST_SWEEPS_TO_PREDICT = Count(8, "-", "With fewer sweeps a gain cannot be separated from chance.")
 ODD_SWEEP_RATIO = Real(
     5.0, "-", "Rms misfit of a sweep over the median of all sweeps above which it is said to be the odd one."

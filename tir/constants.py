@@ -12,7 +12,9 @@ SMALLEST_LOAD = Real(
     1e-6, "N", "Replaces a load Fz <= 0, at which formulae are 0/0; the forces returned there are exactly 0."
 )
 CONDITIONS_PER_BLOCK = Count(
-    8192, "-", "Conditions that numpy computes together; intermediate results stay in the cache."
+    8192,
+    "-",
+    "Conditions that numpy computes together, in tir and in mffit; intermediate results stay in the cache.",
 )
 SCALAR_CALLS_WORTH_LOADING = Count(
     4000, "-", "Scalar calls before a kernel is loaded: half the time that loading takes.", "docs/speed.md"
@@ -78,7 +80,10 @@ EFFECTIVE_RADIUS_RANGE = Series(
     (0.85, 1.05), "-", "Usual effective over unloaded radius; outside, a coefficient is probably wrong."
 )
 EPS_GAMMA_NEAR_ONE = Real(
-    0.1, "-", "Distance of eps_gamma from 1 below which turn-slip stiffness exceeds ten times that at 0."
+    0.1,
+    "-",
+    "Distance of eps_gamma from 1 below which turn-slip stiffness exceeds ten times that at 0; where zeros suggest it, the "
+    "camber stiffness is wrong.",
 )
 NEGLIGIBLE_SHARE = Real(
     0.01, "-", "Share of a force within the accuracy of a rig and of rounded coefficients."

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config, axis_signs
+from mffit.constants import MOST
 from mffit.diagnosis import constants, wording
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.explanation import Explanation
@@ -49,7 +50,7 @@ def answered(
     if rest:
         return Answer.UNKNOWN
     if not named:
-        likely = max(alternatives.values(), default=0.0) > constants.LIKELY_ANSWER
+        likely = max(alternatives.values(), default=0.0) > MOST
         return Answer.UNDECIDED if likely else Answer.NOTHING
     open_ = any(one.tied for one in named) or not any(one.repaired for one in named)
     return Answer.UNDECIDED if open_ else Answer.FOUND

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from mffit.diagnosis import constants
 from mffit.points import Points, levels
+from mffit.points.constants import FEWEST_POINTS
 
 
 def by_condition(points: Points) -> Points:
@@ -37,5 +37,5 @@ def by_condition(points: Points) -> Points:
 def _held(values: np.ndarray, quantity: levels.LevelKind) -> np.ndarray:
     """Index (n,) of the level at which each value was held; all 0 if the quantity was swept or never changed."""
     level = levels.nearest_labels(values, quantity)
-    many = len(values) < constants.FEWEST_POINTS_OF_A_CONDITION * (level.max() + 1)
+    many = len(values) < FEWEST_POINTS * (level.max() + 1)
     return np.zeros_like(level) if many or levels.spread(values, quantity) else level

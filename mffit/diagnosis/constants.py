@@ -21,7 +21,6 @@ SAME_TYRE_DIMENSION = Real(
 SAME_TYRE_REFERENCE = Real(
     0.05, "-", "Relative difference of nominal load or pressure beyond which a model may be of another tyre."
 )
-FEWEST_POINTS_OF_A_CONDITION = Count(8, "-", "A setting with fewer points was swept, not held.")
 
 # What the data must vary for an effect to be visible
 VISIBLE_SPIN_CAMBER = Real(0.2, "rad", "Smallest range of camber that shows the spin by camber alone.")
@@ -32,9 +31,6 @@ VISIBLE_SENSE_SHARE = Real(0.1, "-", "Smallest share of points that each sense o
 
 # Stated noise
 LEAST_STATED_NOISE_SHARE = Real(0.05, "-", "Stated uncertainties are raised to this share of their median.")
-NOISE_SHARE_OF_SPAN = Real(
-    0.01, "-", "Noise over the span of the misfit where sweeps are too short to show it."
-)
 NO_NOISE_SHARE = Real(
     2e-4,
     "-",
@@ -42,7 +38,6 @@ NO_NOISE_SHARE = Real(
 )
 
 # What a fit leaves
-MOST_OF_A_MISFIT = Real(0.5, "-", "Share of a misfit beyond which the effect that explains it is its cause.")
 
 # Scatter as found
 STATED_NOISE_FACTOR = Real(2.0, "-", "Usual factor (1 sigma) between true and stated uncertainties.")
@@ -78,9 +73,6 @@ TAIL_DEGREES_OF_FREEDOM = Series(
 )
 MOST_READING_WEIGHT_ROUNDS = Count(4, "-", "Most rounds that estimate scatter and weights in turn.")
 READINGS_FOR_SCATTER = Count(400, "-", "Readings of a channel that suffice to estimate its scatter.")
-FEWEST_SWEEPS_FOR_SCATTER = Count(
-    8, "-", "Fewest sweeps used for the scatter, however many readings each has."
-)
 DIAGNOSED_OUTLIER_RATIO = Real(4.5, "-", "Misfit over noise above which a reading is listed as an outlier.")
 MOST_EXPLANATION_ROUNDS = Count(3, "-", "Most rounds of scatter, effects and coefficients in turn.")
 SCATTER_SETTLED = Real(
@@ -93,7 +85,6 @@ NOISE_MOVED = Real(
 )
 GENEROUS_EFFECT_SIZE = Real(3.0, "-", "Size of effects over the usual one while the scatter is estimated.")
 # Where the misfit is
-FEWEST_READINGS_OF_A_REGION = Count(4, "-", "Fewest readings whose mean makes a region.")
 MOST_REGIONS = Count(12, "-", "Most regions that are listed.")
 MOST_UNEXPLAINED_REGIONS = Count(4, "-", "Most regions of unexplained misfit that are listed.")
 MOST_REGION_BINS = Count(6, "-", "Most bins of one variable.")
@@ -167,21 +158,11 @@ USUAL_MISS_OF_A_FORMULA = Real(
 SEPARATING_CHI2 = Real(9.0, "-", "Expected chi2 between explanations at which a run is worthwhile: 3 sigma.")
 
 # Confidence and answer
-TWO_SIGMA = Real(
-    2.0,
-    "-",
-    "Standard deviations within which a size lies, beyond which a number of an effect has changed, and a channel is worse.",
-)
 LOG_ODDS_DIVISOR = Real(
     1.35,
     "-",
     "Divides log odds: linearised coefficients, estimated noise and unknown distributions exaggerate evidence.",
     "diagnosis_study.py --doubtful --seed 21, by maximum likelihood; checked on other seeds, docs/evidence-diagnosis.md",
-)
-LIKELY_ANSWER = Real(
-    0.5,
-    "-",
-    "Confidence below which an effect is likelier wrong than right: a suspicion, which is not repaired.",
 )
 SAME_EFFECT_SHARE = Real(
     0.99, "-", "Share of an effect that another explains from which the two are one for these readings."
@@ -205,19 +186,4 @@ PARTS_OF_A_RUN = Count(
 # What a fit leaves
 IMITATED_SHARE = Real(
     1e-3, "-", "Share of an effect below which fitted numbers imitate it and residuals say nothing."
-)
-DISTINCT_DIRECTION = Real(
-    1e-6,
-    "-",
-    "A direction with a smaller share of the power of the strongest one is one with others: it adds no number.",
-)
-SAME_RESIDUALS = Real(
-    0.5,
-    "-",
-    "Squared cosine between the changes by two effects from which they explain the same residuals. Effects of different "
-    "channels have about 0, those that sweeps hardly separate nearly 1.",
-)
-MOST_RIVALS_NAMED = Count(2, "-", "Most effects that are named beside the best one.")
-MOST_NUMBERS_IN_SENTENCE = Count(
-    3, "-", "Most numbers of an effect, or conditions of residuals, in a sentence."
 )

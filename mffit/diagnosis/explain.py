@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mffit.constants import MISFIT_AT_NOISE
+from mffit.constants import MISFIT_AT_NOISE, TWO_SIGMA
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import bump_scan
 from mffit.diagnosis.explanation import Explanation
@@ -153,7 +153,7 @@ def significant(found: Explanation, inexact: Inexactness) -> Explanation:
     def is_left(effect: Effect) -> bool:
         return any(
             abs(refined.numbers[name] - problem.start.number(name, problem.points))
-            > constants.TWO_SIGMA * refined.stderr.get(name, 0.0)
+            > TWO_SIGMA * refined.stderr.get(name, 0.0)
             for name in effect.parameters
         )
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.as_json import keys
-from mffit.diagnosis import constants
+from mffit.constants import TWO_SIGMA
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.effects import Effect
@@ -44,7 +44,7 @@ def limits(
             white = problem.noise.whiten(columns[:, np.any(columns != 0.0, axis=0)])
             white = white - axes @ (axes.T @ white)  # what the numbers of the chosen effects cannot follow
             found = Informed.of_rows(white, chosen.residual)
-            sizes.append(rms(np.abs(found.mean) + constants.TWO_SIGMA * found.u))
+            sizes.append(rms(np.abs(found.mean) + TWO_SIGMA * found.u))
         # An effect that is even in its number is tested from several starts; the most sensitive one counts.
         out.append(Limit(effect, min(sizes)))
     return tuple(sorted(out, key=lambda row: row.share))

@@ -145,6 +145,6 @@ def judged(
     others = [e for e in rivals if e not in chosen.effects]
     for rival, groups in prediction.problem.columns(without.state, others).items():
         near = min((prediction.of(without, columns) for columns in groups), key=lambda p: p.total)
-        if max(near.falls(present), near.falls(present, most)) < constants.WORSE_PREDICTION:
+        if max(near.falls(present), near.falls(present, most)) < constants.TWO_SIGMA:
             tied.append(prediction.joint.fit((*without.effects, rival), without.numbers))
     return Judged(taken / max(taken + left, 1e-9), tuple(tied))

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.special import chdtrc
 
 from mffit.as_json import estimates, keys
-from mffit.constants import PREDICTION_FALSE_ALARM
+from mffit.constants import MOST, NAMED_IN_SENTENCE, PREDICTION_FALSE_ALARM, WEAKEST_DIRECTION
 from mffit.diagnosis import constants
 from mffit.diagnosis.needs import possible
 from mffit.diagnosis.noise import Noise, Scatter
@@ -81,7 +81,7 @@ class BestEffect:
     @property
     def explains_most(self) -> bool:
         """Whether it is an effect of rig or environment that removes most of the misfit, beyond chance."""
-        most = self.best.share > constants.MOST_OF_A_MISFIT
+        most = self.best.share > MOST
         return most and self.possible and self.best.effect.kind != "tyre"
 
 
@@ -194,7 +194,7 @@ class Left(NamedTuple):
         information, pull = found.information[np.ix_(seen, seen)], found.pull[seen]
         size = np.sqrt(np.diag(information))
         strength, axes = np.linalg.eigh(information / np.outer(size, size))
-        clear = strength > constants.DISTINCT_DIRECTION
+        clear = strength > WEAKEST_DIRECTION**2
         inverse = (axes[:, clear] / strength[clear]) @ axes[:, clear].T / np.outer(size, size)
         explained, amount = float(pull @ inverse @ pull), inverse @ pull
         return _Test(
@@ -244,7 +244,7 @@ def best_effect(left: Left, effects: Sequence[Effect] = CATALOG) -> BestEffect |
     found = [_weighed(left, step, len(best_of)) for step in likely]
     best = max(found, key=lambda one: (one.gain, -one.best.log_chance))
     near = [step for step in best_of.values() if step is not best.best and _as_good(step, best.best)]
-    return replace(best, rivals=tuple(near[: constants.MOST_RIVALS_NAMED]))
+    return replace(best, rivals=tuple(near[: NAMED_IN_SENTENCE - 1]))
 
 
 def _weighed(left: Left, step: OneStep, tried: int) -> BestEffect:
@@ -261,7 +261,7 @@ def _weighed(left: Left, step: OneStep, tried: int) -> BestEffect:
 def _as_good(other: OneStep, best: OneStep) -> bool:
     """Whether another effect explains the same residuals about as well as the best one."""
     a, b = other.change, best.change
-    if float(a @ b) ** 2 < constants.SAME_RESIDUALS * float(a @ a) * float(b @ b):
+    if float(a @ b) ** 2 < MOST * float(a @ a) * float(b @ b):
         return False
     return other.log_chance < best.log_chance - math.log(constants.TIE_EXCLUDED_BY_CHANCE)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from mffit.diagnosis import constants
+from mffit.constants import MOST
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import EXACT
 from mffit.diagnosis.notes import FileKept, NoRepair
@@ -73,7 +73,7 @@ def repair(confirmed: Confirmed, validation: Validation, search: Search) -> Repa
     likely = [
         one.effect
         for one in named
-        if search.asked.repair_all or one.confidence_of_tie(confirmed.alternatives) >= constants.LIKELY_ANSWER
+        if search.asked.repair_all or one.confidence_of_tie(confirmed.alternatives) >= MOST
     ]
     if len(likely) < len(named):
         found, validation, refused = only(likely)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mffit.constants import ASSUMED_NOISE_SHARE
+from mffit.constants import ASSUMED_NOISE_SHARE, FEWEST_SWEEPS_TO_PREDICT
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import MemorySpan, Noise, RunOffsets, Scatter
 from mffit.diagnosis.problem import DiagnosisProblem
@@ -137,7 +137,7 @@ class ScatterOfChannel(ReadOnlyArrays):
     def sample(self) -> ScatterOfChannel:
         """The channel thinned to every k-th sweep, if it has more readings than the estimation of scatter needs."""
         names = np.unique(self.sweep)
-        most = max(len(names) // int(constants.FEWEST_SWEEPS_FOR_SCATTER), 1)
+        most = max(len(names) // int(FEWEST_SWEEPS_TO_PREDICT), 1)
         stride = min(math.ceil(len(self.sweep) / constants.READINGS_FOR_SCATTER), most)
         return self if stride == 1 else self._select(np.flatnonzero(np.isin(self.sweep, names[::stride])))
 

@@ -9,6 +9,7 @@ import numpy as np
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import MemorySpan, Noise, Origin, Scatter
 from mffit.errors import InputError
+from mffit.fit.constants import NOMINAL_NOISE_SHARE
 from mffit.points import Points
 from mffit.points.noise import neighbour_noise
 from mffit.quantities import CHANNELS, SIDEWAYS, u_column
@@ -98,5 +99,5 @@ def _neighbour_noise(points: Points, values: np.ndarray) -> float:
     """Noise of a channel estimated from neighbouring points; a share of the span if sweeps are too short."""
     noise = neighbour_noise(points, values)
     if np.isnan(noise):
-        noise = constants.NOISE_SHARE_OF_SPAN * float(np.ptp(values[np.isfinite(values)]))
+        noise = NOMINAL_NOISE_SHARE * float(np.ptp(values[np.isfinite(values)]))
     return max(noise, TINY)

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from mffit.constants import FEWEST
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import Noise
 from mffit.points import Points, levels
@@ -57,7 +58,7 @@ def _tested(points: Points, residual: np.ndarray, noise: Noise) -> Iterator[tupl
         for k, channel in enumerate(noise.channels):
             rows = position[np.flatnonzero(mask) + k * len(points)]
             rows = rows[rows >= 0]
-            if len(rows) < constants.FEWEST_READINGS_OF_A_REGION:
+            if len(rows) < FEWEST:
                 continue
             bias = float(residual[noise.used[rows]].mean())
             z = bias / (noise.error_of_sum(rows) / len(rows))
@@ -88,7 +89,7 @@ def _cells(points: Points) -> Iterator[tuple[dict[str, Range], np.ndarray]]:
         for limits_a, mask_a in found.get(a, ()):
             for limits_b, mask_b in found.get(b, ()):
                 mask = mask_a & mask_b
-                if mask.sum() >= constants.FEWEST_READINGS_OF_A_REGION:
+                if mask.sum() >= FEWEST:
                     yield {a: limits_a, b: limits_b}, mask
 
 
@@ -103,7 +104,7 @@ def bins(points: Points) -> dict[str, list[tuple[Range, np.ndarray]]]:
 
 def _cut(values: np.ndarray) -> list[tuple[Range, np.ndarray]]:
     """Bins of values (n,): their levels if there are few, else quantiles."""
-    fewest, most = constants.FEWEST_READINGS_OF_A_REGION, constants.MOST_REGION_BINS
+    fewest, most = FEWEST, constants.MOST_REGION_BINS
     finite = values[np.isfinite(values)]
     if len(finite) < 2 * fewest or np.ptp(finite) == 0.0:
         return []

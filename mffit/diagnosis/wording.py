@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 from mffit.as_json import Json, document
-from mffit.constants import MISFIT_AT_NOISE
+from mffit.constants import MISFIT_AT_NOISE, MOST, NAMED_IN_SENTENCE, TWO_SIGMA
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.noise import MemorySpan, Noise, Origin
@@ -224,7 +224,7 @@ def _suspicions(diagnosis: Diagnosis) -> str:
     found = diagnosis.suspected
     if not found or any(isinstance(remark, NoRepair) for remark in diagnosis.notes):
         return ""
-    limit, names = per_cent(constants.LIKELY_ANSWER), listed([_suspicion(one) for one in found])
+    limit, names = per_cent(MOST), listed([_suspicion(one) for one in found])
     if diagnosis.repaired:
         return f" Suspected but not repaired, at a confidence below {limit}: {names}."
     return f" It is not repaired, because no confidence reaches {limit}: {names}."
@@ -364,7 +364,7 @@ def remedy(found: AcceptedEffect, diagnosis: Diagnosis) -> str:
 def _is_significant(found: AcceptedEffect, name: str) -> bool:
     """Whether a number of an effect differs significantly from its value before."""
     value, u = found.parameters[name]
-    return abs(value - found.before[name]) > constants.TWO_SIGMA * u
+    return abs(value - found.before[name]) > TWO_SIGMA * u
 
 
 def _remedy_with(found: AcceptedEffect, name: str, signs: Mapping[str, float]) -> str:
@@ -412,7 +412,7 @@ def best_effect(found: BestEffect) -> str:
     """A clause on the effect that explains residuals best, with its numbers and its significance."""
     step = found.best
     numbers = [_number(name, value, u) for name, (value, u) in step.numbers.items()]
-    listed = f" ({', '.join(numbers)})" if len(numbers) <= constants.MOST_NUMBERS_IN_SENTENCE else ""
+    listed = f" ({', '.join(numbers)})" if len(numbers) <= NAMED_IN_SENTENCE else ""
     rivals = f", as does {' or '.join(o.effect.name for o in found.rivals)}" if found.rivals else ""
     says = (
         "contradicts what was declared or expected"

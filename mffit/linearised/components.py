@@ -8,12 +8,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mffit.constants import CERTAIN_SIGMA
 from mffit.linearised import constants
 from mffit.linearised.mixed import Mixed, Variances
 from mffit.linearised.search import ParameterSearch, SearchedParameter, flat, normal
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.scatter import rms
 from tir.frozen import ReadOnlyArrays
+
+CERTAIN_EVIDENCE = 0.5 * CERTAIN_SIGMA**2
+"""Log evidence that proves a model error, and a condition over which it changes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +139,7 @@ class Terms(ReadOnlyArrays):
         if near is None and seen.offset > seen.missed and self.smooth.inputs:
             others = first.over_one_input(self.smooth)
             other = best(max(others, key=lambda one: search.density(one.logarithms)[0]))
-            if search.density(other)[0] > search.density(found)[0] + constants.CERTAIN_EVIDENCE:
+            if search.density(other)[0] > search.density(found)[0] + CERTAIN_EVIDENCE:
                 return Components.of_logarithms(other)
         return seen
 

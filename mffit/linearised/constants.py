@@ -23,9 +23,6 @@ STEPS_OF_A_SWEEP = Real(
     "-",
     "Steps between settings from which a run that moves through them sweeps the condition; it may wander by half of one.",
 )
-ENDS_OF_A_RUN = Series(
-    (5.0, 95.0), "%", "Percentiles between which a run moves a condition; ignores single values."
-)
 DIVISIONS_OF_WARMING = Count(4, "-", "The same along the temperature of the tyre.")
 USUAL_TEMPERATURES = Series(
     (10.0, 50.0, 90.0),
@@ -48,11 +45,6 @@ WIDER_THAN_THE_FIT = Real(
     10.0,
     "-",
     "Variance of a coefficient where there is model error, over that of the fit, which assumes none.",
-)
-CERTAIN_EVIDENCE = Real(
-    12.5,
-    "-",
-    "Log evidence that proves a model error, and a condition over which it changes: five standard deviations.",
 )
 LONGEST_LENGTH = Real(
     20.0, "-", "Largest length of smooth functions over the tested range: along it they are constant."

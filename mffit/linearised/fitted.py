@@ -11,7 +11,7 @@ import numpy as np
 
 from mffit.least_squares import inverse, root
 from mffit.linearised import constants
-from mffit.linearised.components import Components, Terms, own_columns
+from mffit.linearised.components import CERTAIN_EVIDENCE, Components, Terms, own_columns
 from mffit.linearised.inputs import along, inputs_of, settings_of, turned
 from mffit.linearised.mixed import LeftOutReadings, Mixed, MixedPosterior, Variances
 from mffit.linearised.smooth import SmoothFunctions
@@ -138,12 +138,12 @@ class LinearisedChannel(ReadOnlyArrays):
     @property
     def is_proven(self) -> bool:
         """Whether neither noise nor random effects of the runs can explain the model error."""
-        return self.proof > constants.CERTAIN_EVIDENCE
+        return self.proof > CERTAIN_EVIDENCE
 
     @property
     def proven_over(self) -> list[str]:
         """Names of the inputs over which the model error changes significantly, the clearest first."""
-        return [name for name, gain in self.missed_over.items() if gain > constants.CERTAIN_EVIDENCE]
+        return [name for name, gain in self.missed_over.items() if gain > CERTAIN_EVIDENCE]
 
     @cached_property
     def missed_over(self) -> dict[str, float]:

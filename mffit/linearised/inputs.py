@@ -9,6 +9,7 @@ import numpy as np
 
 from mffit.linearised import constants
 from mffit.points import Points, levels
+from mffit.points.constants import CORE
 from mffit.quantities import CONDITIONS, REVERSED_BY_HALF_A_TURN
 
 LEVELS: Mapping[str, levels.LevelKind] = {
@@ -130,7 +131,7 @@ def _runs(points: Points) -> list[np.ndarray]:
 def _width(values: np.ndarray) -> float:
     """Width of the range through which a run moves a condition, without extreme values."""
     in_order = np.sort(values)  # np.percentile takes ten times as long for few values
-    low, high = np.interp(constants.ENDS_OF_A_RUN, np.linspace(0.0, 100.0, len(values)), in_order)
+    low, high = np.interp(CORE, np.linspace(0.0, 100.0, len(values)), in_order)
     return float(high - low)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config
-from mffit.constants import CAMBER_OF_SLOPES, COVERAGE_FACTOR_95, LARGEST_CAMBER_REDUCTION, USUAL_U_MOMENT
+from mffit.constants import CAMBER_OF_SLOPES, COVERAGE_FACTOR_95, USUAL_U_MOMENT
 from mffit.measured import constants, wording
 from mffit.measured.camber_reduction import camber_reduction, true_camber_stiffness
 from mffit.measured.evidence import DirectEvidence
@@ -21,6 +21,7 @@ from mffit.measured.uncertain import combined
 from mffit.measured.zeros import LoadGroup, zeros
 from mffit.rig_errors import AtZero
 from tir import Quantity
+from tir.constants import EPS_GAMMA_NEAR_ONE
 
 
 class Factor(NamedTuple):
@@ -130,7 +131,7 @@ def load_dependence(
         why = wording.SLOPE_IN_NOISE.format(slope=slope, twice=2.0 * u)
     elif abs(pecp1) <= COVERAGE_FACTOR_95 * at_nominal.std_dev:
         why = wording.EPSILON_IN_NOISE
-    elif most >= LARGEST_CAMBER_REDUCTION:
+    elif most >= 1.0 - EPS_GAMMA_NEAR_ONE:
         why = wording.SLOPE_TOO_STEEP.format(largest=most)
     else:
         pecp2 = slope / pecp1

@@ -63,14 +63,6 @@ SMALLEST_SWEEP_OF_SLIP = Real(
     "-",
     "Smallest range of a sweep of longitudinal slip; every tyre has a longitudinal force beyond it.",
 )
-SWEPT_SHARE = Real(
-    0.5,
-    "-",
-    "Share of its setting's range that a movement among plateaus covers to be a sweep; a move to the next plateau covers less.",
-)
-SWEPT_LEVELS = Count(
-    4, "-", "Levels of an angle that recordings cross to be a test of it, without which a file is worthless."
-)
 GAP_OVER_STEP = Real(5.0, "-", "Smallest gap in time over the usual step.")
 BLOCKS_OF_STRETCH = Count(10, "-", "Blocks of a stretch; leading ones are compared with its second half.")
 
@@ -94,9 +86,6 @@ UNLIKE_SHARE = Real(
     "Difference of the side forces of two files at like conditions, over their size, that is pointed out: 20 K change them by "
     "6 %, a worn tread by less.",
 )
-FEWEST_COMPARED = Count(
-    4, "-", "Fewest readings by which sweeps or files are compared, beyond the zeros that are taken off."
-)
 
 # Definition of slip
 SLIP_OF_ZERO_FORCE = Real(
@@ -112,11 +101,6 @@ SOFTEST_SLIP_STIFFNESS = Real(
 )
 LARGEST_BRAKE_SLIP_OF_FORM = Real(
     0.9, "-", "Slip of braking beyond which the wheel nearly stands and speeds imply no radius."
-)
-WEAKEST_DIRECTION_OF_ZERO = Real(
-    1e-3,
-    "-",
-    "Singular value over the largest below which the zero does not follow a combination of conditions.",
 )
 
 # Steps of the sideslip angle and of longitudinal slip

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy  # its parts are loaded on first use
 
+from mffit.constants import FEWEST, MOST
 from mffit.points import constants
 from mffit.points.faulty import DRIVEN
 from mffit.points.points import Points, of_si
@@ -52,7 +53,7 @@ def lost_sweeps(
         kept = getattr(points, name)
         kept = kept[np.isfinite(kept)]
         lowest, highest = (float(kept.min()), float(kept.max())) if len(kept) else (0.0, 0.0)
-        if high - low > 2.0 * step and highest - lowest < constants.SWEPT_SHARE * (high - low):
+        if high - low > 2.0 * step and highest - lowest < MOST * (high - low):
             column = COLUMN_OF[name]
             unit = f" {CONDITIONS[column].unit}" if CONDITIONS[column].unit_behind else ""
             factor, digits = of_si(column), 3 if name == "kappa" else 1
@@ -61,7 +62,7 @@ def lost_sweeps(
                 for a, b in ((low, high), (lowest, highest))
             )
             levels_of = (high - low) / LEVEL[name]
-            whole = name != "kappa" and highest - lowest <= LEVEL[name] and levels_of > constants.SWEPT_LEVELS
+            whole = name != "kappa" and highest - lowest <= LEVEL[name] and levels_of > FEWEST
             cure = (
                 "; hold set-points longer, or leave out column time_s to take each row for a finished point"
             )
@@ -79,7 +80,7 @@ def little_used(notes: Sequence[StretchNote]) -> tuple[str, ...]:
     judged = [note for note in notes if note.file in swept and note.dropped not in NO_SWEEP]
     seconds = sum(note.end_s - note.begin_s for note in judged)
     used = sum(note.end_s - note.begin_s for note in judged if note.points)
-    if not judged or used > constants.SWEPT_SHARE * seconds:
+    if not judged or used > MOST * seconds:
         return ()
     return (
         f"the points hold {used:.0f} s of {seconds:.0f} s of recorded sweeps{_reason(judged)}; `mffit sniff` lists the stretches "

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import chdtrc, chdtri, stdtrit
 
-from mffit.constants import EXPLAINED_SHARE, FALSE_ALARM
-from mffit.points import constants, levels
+from mffit.constants import EXPLAINED_SHARE, FALSE_ALARM, FEWEST
+from mffit.points import levels
 from mffit.points.like import MeanReadings, conditions, mean_readings, noise, rolling
 from mffit.points.points import Points, of_si
 from mffit.quantities import CONDITIONS
@@ -232,7 +232,7 @@ def _differences(
 def _compared(setting: str, first: MeanReadings, second: MeanReadings) -> _Compared | None:
     """Two sweeps; None with too few common readings, without noise, or of a dead channel."""
     common = first.keys() & second.keys()
-    if len(common) < constants.FEWEST_COMPARED:
+    if len(common) < FEWEST:
         return None
     apart, u, force = np.transpose(list(_differences(setting, first, second)))
     if not np.all(u > 0.0) or not np.any(force):

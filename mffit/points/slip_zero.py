@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import STRAIGHT
+from mffit.constants import STRAIGHT, WEAKEST_DIRECTION
 from mffit.errors import InputError
 from mffit.points import constants
 from mffit.points.levels import CAMBER, LOAD, PRESSURE, SIDESLIP, SPEED, LevelKind
@@ -476,11 +476,11 @@ def _robust_lines(design: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, float]
     """Least-squares solution after rejection of outliers, and the robust scatter; empty columns get zero."""
     size = np.linalg.norm(design, axis=0)
     scaled = design / np.where(size > 0.0, size, 1.0)
-    solution, *_ = np.linalg.lstsq(scaled, y, rcond=constants.WEAKEST_DIRECTION_OF_ZERO)
+    solution, *_ = np.linalg.lstsq(scaled, y, rcond=WEAKEST_DIRECTION)
     residual = y - scaled @ solution
     kept = np.abs(residual) <= ALARM * robust(residual)
     if np.sum(kept) > design.shape[1]:
-        solution, *_ = np.linalg.lstsq(scaled[kept], y[kept], rcond=constants.WEAKEST_DIRECTION_OF_ZERO)
+        solution, *_ = np.linalg.lstsq(scaled[kept], y[kept], rcond=WEAKEST_DIRECTION)
     scatter = robust(y - scaled @ solution)
     return np.asarray(solution / np.where(size > 0.0, size, 1.0)), scatter
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy  # its parts are loaded on first use
 
-from mffit.constants import FALSE_ALARM, STRAIGHT, UPRIGHT
+from mffit.constants import FALSE_ALARM, MOST, STRAIGHT, UPRIGHT
 from mffit.points import constants
 from mffit.points.stretch import MOVE, SWEEP, Stretch, runs
 from mffit.scatter import beyond, finite_median, robust
@@ -138,10 +138,7 @@ def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) ->
     rests_long = 2 * sum(seconds >= _shortest_plateau(settings, roll=True) for seconds in held) > len(held)
     staircase = 2.0 * sum(held) >= np.ptp(settings.time) or (rests_long and _hurries(settings))
     # Between plateaus a movement is a sweep only if it covers most of its setting's range; else it leads to the next plateau.
-    span = {
-        name: constants.SWEPT_SHARE * np.ptp(_smoothed(settings, name)[0]) if staircase else 0.0
-        for name in STEP
-    }
+    span = {name: MOST * np.ptp(_smoothed(settings, name)[0]) if staircase else 0.0 for name in STEP}
     # The forces of a rest shorter than their transient never settle: it is part of a movement.
     shortest = _transient(settings) if staircase else _shortest_plateau(settings)
     found = [
@@ -164,7 +161,7 @@ def _hurries(settings: SteadySettings) -> bool:
     made = np.sum(
         [np.abs(np.diff(_smoothed(settings, name)[0][::lag])) / step for name, step in STEP.items()], axis=0
     )
-    return bool(np.sum(made) ** 2 <= constants.SWEPT_SHARE * len(made) * np.sum(made**2))
+    return bool(np.sum(made) ** 2 <= MOST * len(made) * np.sum(made**2))
 
 
 def _with_their_ends(settings: SteadySettings, rests: Sequence[tuple[int, int]]) -> list[Stretch]:
@@ -250,7 +247,7 @@ def _swept(
             }
             if name not in steps or steps[name] < max(steps.values()):
                 continue
-            follows = name == "gamma" and ranges["alpha"] > constants.SWEPT_SHARE * ranges["gamma"]
+            follows = name == "gamma" and ranges["alpha"] > MOST * ranges["gamma"]
             if ranges[name] >= span[name] and not follows and _lasts(settings, smooth[name], b, e):
                 found += [Stretch(i, j, "", SWEEP, name) for i, j in _without_jumps(settings, name, b, e)]
     taken = np.zeros(end - begin, dtype=bool)
@@ -270,7 +267,7 @@ def _lasts(settings: SteadySettings, smooth: np.ndarray, begin: int, end: int) -
         return True
     rolled = seconds * float(np.median(settings.V[begin:end]))
     away = abs(smooth[end - 1] - smooth[begin])
-    turns = away <= (1.0 - constants.SWEPT_SHARE) * np.ptp(smooth[begin:end])
+    turns = away <= (1.0 - MOST) * np.ptp(smooth[begin:end])
     return bool(turns and rolled >= 2.0 * constants.TRANSIENT_ROLL and end - begin >= constants.FEWEST_POINTS)
 
 
@@ -282,7 +279,7 @@ def _without_jumps(settings: SteadySettings, name: str, begin: int, end: int) ->
     values = getattr(settings, name)[begin:end]
     lag = samples_in(settings.time, constants.AVERAGED_TIME)
     smooth = scipy.ndimage.uniform_filter1d(values, lag, mode="nearest")
-    most = constants.SWEPT_SHARE * np.ptp(smooth)
+    most = MOST * np.ptp(smooth)
     crossed = most * constants.AVERAGED_TIME / constants.COMPARED_APART
     usual = constants.GAP_OVER_STEP * float(np.median(np.abs(smooth[lag:] - smooth[:-lag])))
     noise = beyond(FALSE_ALARM / len(values)) * _noise(values) * np.sqrt(2.0 / lag)
@@ -330,7 +327,7 @@ def _swings(time: np.ndarray, values: np.ndarray, level: float) -> np.ndarray:
     control around a set-point does not.
     """
     low, high = np.percentile(values, constants.CORE)
-    step, found = max(level, constants.SWEPT_SHARE * (high - low)), np.zeros(len(values), dtype=bool)
+    step, found = max(level, MOST * (high - low)), np.zeros(len(values), dtype=bool)
     lag = samples_in(time, constants.COMPARED_APART)
     while (lag := lag // 2) >= samples_in(time, constants.AVERAGED_TIME):
         noise = beyond(FALSE_ALARM / len(values)) * _noise(values) * np.sqrt(2.0 / lag)

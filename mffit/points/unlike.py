@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.constants import FEWEST
 from mffit.points import constants, levels
 from mffit.points.like import MeanReading, conditions, mean_readings, noise, rolling
 from mffit.points.points import Points
@@ -76,7 +77,7 @@ class _Difference(NamedTuple):
 
 def _difference(first: list[MeanReading], second: list[MeanReading], cell: Points) -> _Difference | None:
     """The difference of two files at common steps of sideslip, in rising order; None with too few."""
-    if len(first) < constants.FEWEST_COMPARED + 2:  # two zeros are taken off
+    if len(first) < FEWEST + 2:  # two zeros are taken off
         return None
     (x, y, u), (x_other, y_other, u_other) = (
         np.transpose([(one.alpha, one.Fy / one.Fz, np.nan_to_num(one.u) / one.Fz) for one in of])

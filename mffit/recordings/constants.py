@@ -7,9 +7,6 @@ from tir.constant import Count, Real, Series
 PERCENTILE_OF_SIZE = Real(
     99.5, "%", "Percentile of readings, or of rates of steering, that is their size; ignores single spikes."
 )
-GRIP_THAT_MEANS_ANOTHER_UNIT = Real(
-    5.0, "-", "Force over load above which the load has another unit than the force."
-)
 FASTEST_SPEED_IN_METRES = Real(25.0, "m/s", "Larger speeds are in km/h: rigs run at 90 km/h at most.")
 USUAL_CONTACT_PATCH = Real(
     0.02,

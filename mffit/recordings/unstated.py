@@ -23,6 +23,7 @@ from mffit.sweeps.channels import BY_NAME, Channel
 from mffit.sweeps.columns import implausible, numbers
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import converted, is_unit, spelt
+from tir.constants import CREDIBLE_FRICTION
 
 
 class Choice(NamedTuple):
@@ -224,7 +225,7 @@ def _groups(kind: str, found: Mapping[str, FoundChannel]) -> list[dict[str, Foun
     load = {name: column for name, column in group.items() if name == "Fz_N"}
     rest = {name: column for name, column in group.items() if name not in load}
     largest = max((column.size for column in rest.values()), default=0.0)
-    if load and largest > constants.GRIP_THAT_MEANS_ANOTHER_UNIT * load["Fz_N"].size:
+    if load and largest > CREDIBLE_FRICTION * load["Fz_N"].size:
         return [load, rest]
     return [group] if group else []
 

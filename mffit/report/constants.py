@@ -13,8 +13,6 @@ MOST_ROWS = Count(
     12, "-", "Most bars of a picture, and rows of a table in a terminal where a file or page has all."
 )
 
-FEWEST_SET_POINTS_OF_CURVE = Count(4, "-", "Fewer set-points over an angle show no curve.")
-SET_POINT_WIDTH = Real(0.25, "deg", "Angles closer than this count as one set-point.")
 SLIP_SET_POINT_WIDTH = Real(0.01, "-", "Longitudinal slips closer than this count as one set-point.")
 HELD_SHARES = Series(
     (0.0, 0.4, 0.8), "-", "What curves hold, as shares of the tested camber, sideslip and slip."

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.constants import STEPS_OF_LINE
+from mffit.constants import FEWEST, STEPS_OF_LINE
+from mffit.parts.constants import SAME_CAMBER
 from mffit.points import Points, levels
 from mffit.quantities import CONDITIONS, SIDEWAYS
 from mffit.report import constants
@@ -121,7 +122,7 @@ def _along(points: Points, name: str, over: str, rows: np.ndarray, keys: Sequenc
     values, found = shown_values(points, over), []
     for key, members in _groups(np.column_stack(keys)[rows]):
         index = rows[members]
-        if _set_points(values[index], over) < constants.FEWEST_SET_POINTS_OF_CURVE:
+        if _set_points(values[index], over) < FEWEST:
             continue
         load, pressure, direction, mount, held, camber = key.tolist()
         found.append(
@@ -142,7 +143,7 @@ def _along(points: Points, name: str, over: str, rows: np.ndarray, keys: Sequenc
 
 def _set_points(values: np.ndarray, over: str) -> int:
     """Number of set-points of an angle (k,) [deg], or of longitudinal slip."""
-    width = constants.SLIP_SET_POINT_WIDTH if over == "kappa" else constants.SET_POINT_WIDTH
+    width = constants.SLIP_SET_POINT_WIDTH if over == "kappa" else SAME_CAMBER
     return len(np.unique(np.round(values / width)))
 
 

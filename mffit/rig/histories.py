@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.points import Points, main_path
 from mffit.points.clock import sense
-from mffit.rig import constants
+from tir import constants
 
 
 class History:
@@ -56,7 +56,7 @@ def blocks(points: Points, *, by_sweep: bool) -> Iterator[np.ndarray]:
 
     The size of the blocks fits the processor's cache. With ``by_sweep`` a larger sweep is one block.
     """
-    n, most = len(points), int(constants.POINTS_OF_A_BLOCK)
+    n, most = len(points), int(constants.CONDITIONS_PER_BLOCK)
     if n <= most:
         yield np.arange(n)
         return

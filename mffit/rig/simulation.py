@@ -12,12 +12,11 @@ import numpy as np
 from mffit.brief import Brief
 from mffit.points import Points
 from mffit.quantities import CHANNELS, SIDEWAYS
-from mffit.rig import constants
 from mffit.rig.chain import Chain
 from mffit.rig.histories import History, RowsOfTest, blocks, of_part, successive, usual_radius
 from mffit.rig.readings import Readings
 from mffit.rig_errors import BY_NAME, NO_FAULTS, OF_RUN, RIG_ERRORS, Faults
-from tir import Tyre
+from tir import Tyre, constants
 from tir.derivatives import Traced, gradient, plain, traced
 from tir.equations.forces import Forces, State
 
@@ -152,14 +151,14 @@ class Simulation(Brief):
 
         def found(rows: np.ndarray) -> tuple[Readings, Readings]:
             n = len(rows)
-            if lags or n <= constants.POINTS_OF_A_BLOCK:
+            if lags or n <= constants.CONDITIONS_PER_BLOCK:
                 which = successive(rows)
                 every = isinstance(which, slice) and n == len(points)
                 part = points if every else points.select(which, with_table=False)
                 return here._linearised(part, names, numbers, channels, RowsOfTest(history, which))
             whole: dict[str, np.ndarray] = {name: np.empty(n) for name in channels}
             by_number: dict[str, np.ndarray] = {name: np.empty((len(names), n)).T for name in channels}
-            for i in np.array_split(np.arange(n), -(-n // constants.POINTS_OF_A_BLOCK)):
+            for i in np.array_split(np.arange(n), -(-n // constants.CONDITIONS_PER_BLOCK)):
                 out, slopes = found(rows[i])
                 for name in channels:
                     to = slice(i[0], i[-1] + 1)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, STRAIGHT, UPRIGHT
+from mffit.constants import FEWEST, HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, STRAIGHT, UPRIGHT
 from mffit.points import Points, levels
 from mffit.suspicion import constants
 from mffit.suspicion.groups import readings_of
@@ -37,7 +37,7 @@ def copied_sweep(points: Points, config: Config) -> Iterator[Facts]:
     seen: dict[bytes, int] = {}
     for k in np.unique(points.sweep):
         rows = np.flatnonzero(points.sweep == k)
-        if len(rows) < constants.FEWEST or np.ptp(points.Fy[rows]) == 0.0:
+        if len(rows) < FEWEST or np.ptp(points.Fy[rows]) == 0.0:
             continue
         own = readings[rows]
         key = own[np.lexsort(own.T)].tobytes()

@@ -10,7 +10,6 @@ SIDESLIP_OF_SLOPES = Real(
     "deg",
     "Sideslip up to which side force and aligning moment count as linear, and from which every tyre has a force.",
 )
-FEWEST = Count(4, "-", "Fewest readings, or sweeps, that show something: a slope, a copy, which one is odd.")
 USUAL_CAMBER_THRUST = Series(
     (0.2, 1.5),
     "-",
@@ -67,7 +66,6 @@ SHARE_OF_WORST_POINTS = Real(
     "-",
     "Share of worst points of a sweep that are ignored: outliers, and ends where a formula is extrapolated.",
 )
-GROSS_SHARE = Real(0.1, "-", "Error from which known mistakes are tried.")
 IMPLAUSIBLE_SHARE = Real(
     0.5, "-", "Error that is refused without a known mistake, and that undoing one must not leave."
 )
@@ -81,9 +79,6 @@ MOST_SUSPECTS = Count(6, "-", "Most suspected sweeps, worst first, without which
 
 # The fitted model
 DISTRUSTED_MISFIT = Real(1.5, "-", "Misfit over stated noise above which a file is not trusted.")
-CERTAIN_SIGMA = Real(
-    5.0, "-", "Standard deviations beyond which chance explains neither a misfit nor a bound that is hit."
-)
 DOUBTFUL_SIGMA = Real(
     3.5, "-", "Standard deviations beyond which chance does not explain a misfit that is in doubt."
 )

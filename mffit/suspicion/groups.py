@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.constants import FEWEST
 from mffit.points import Points, levels
-from mffit.suspicion import constants
 from tir.frozen import ReadOnlyArrays
 
 
@@ -27,7 +27,7 @@ def groups(points: Points) -> list[Group]:
     found = [*_sweeps(points), *_conditions(points)]
     unique = {group.index.tobytes(): group for group in reversed(found)}
     # Only a minority of the points can contradict the others.
-    return [g for g in reversed(unique.values()) if constants.FEWEST <= len(g.index) <= 0.5 * len(points)]
+    return [g for g in reversed(unique.values()) if FEWEST <= len(g.index) <= 0.5 * len(points)]
 
 
 def readings_of(points: Points) -> np.ndarray:
@@ -53,7 +53,7 @@ def confirmed_by_others(part: Points, others: Points, columns: Collection[str] =
         if columns and column not in columns:
             continue
         own, known = (np.abs(getattr(of, name)) for of in (part, others))
-        several = levels.count(known, kind) >= constants.FEWEST
+        several = levels.count(known, kind) >= FEWEST
         own, known = (levels.in_tolerances(values, kind) for values in (own, known))
         own, known = own[np.isfinite(own)], np.sort(known[np.isfinite(known)])
         below, above = (np.searchsorted(known, own + shift) for shift in (-1.0, 1.0))
@@ -91,7 +91,7 @@ def _parts(points: Points) -> Iterator[tuple[Group, np.ndarray, bool]]:
         own = levels.count(points.gamma[i], levels.CAMBER)
         keys = np.column_stack([load[i], pressure[i], points.direction[i], points.mount[i]])
         # In a camber sweep camber varies continuously and is not a condition.
-        few = own * constants.FEWEST <= len(i)
+        few = own * FEWEST <= len(i)
         by_camber = few and not levels.spread(points.gamma[i], levels.CAMBER)
         if by_camber:
             keys = np.column_stack([keys, camber[i]])

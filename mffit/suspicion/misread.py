@@ -11,7 +11,9 @@ from functools import partial
 
 import numpy as np
 
+from mffit.constants import FEWEST
 from mffit.points import Points, levels
+from mffit.points.constants import UNLIKE_SHARE
 from mffit.points.points import of_si
 from mffit.quantities import CONDITIONS, SIDEWAYS
 from mffit.rig import Simulation
@@ -65,8 +67,8 @@ def misread_sweep(
     around that label confirm the model there. ``signs`` convert from ISO-W to the rig's axes.
     """
     numbers, counts = np.unique(points.sweep, return_counts=True)
-    numbers = numbers[counts >= constants.FEWEST]
-    if len(numbers) < constants.FEWEST:
+    numbers = numbers[counts >= FEWEST]
+    if len(numbers) < FEWEST:
         return
     parts = [points.select(points.sweep == k) for k in numbers]
     size = {name: usual_size(p.channel(name) / p.Fz for p in parts) for name in channels}
@@ -81,8 +83,8 @@ def misread_sweep(
         others = [o for o in off if o is not before]
         worst = {name: max((o[name] for o in others if name in o), default=0.0) for name in before}
         beyond = {n: e for n, e in before.items() if e > constants.DISTRUSTED_MISFIT * worst[n]}
-        gross = {name: error for name, error in beyond.items() if error > constants.GROSS_SHARE}
-        wrong, least = (gross, float(constants.GROSS_SHARE)) if gross else (beyond, 0.0)
+        gross = {name: error for name, error in beyond.items() if error > UNLIKE_SHARE}
+        wrong, least = (gross, float(UNLIKE_SHARE)) if gross else (beyond, 0.0)
         tolerated = {
             n: max(constants.DISTRUSTED_MISFIT * usual[n], least, 0.0 if n in wrong else before[n])
             for n in before

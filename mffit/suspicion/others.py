@@ -15,9 +15,10 @@ import numpy as np
 from scipy.special import chdtrc, ndtr
 
 from mffit.as_json import keys
-from mffit.constants import PREDICTION_FALSE_ALARM
+from mffit.constants import CERTAIN_SIGMA, FEWEST, PREDICTION_FALSE_ALARM
 from mffit.errors import InputError
 from mffit.points import Points
+from mffit.points.constants import UNLIKE_SHARE
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.scatter import rms, usual_size
@@ -95,7 +96,7 @@ class Doubt(ReadOnlyArrays):
     @property
     def channels(self) -> tuple[str, ...]:
         """Channels with a significant error."""
-        certain = float(ndtr(-constants.CERTAIN_SIGMA))
+        certain = float(ndtr(-CERTAIN_SIGMA))
         return tuple(
             e.channel for e in self.errors if e.ratio > constants.DISTRUSTED_MISFIT and e.chance < certain
         )
@@ -133,7 +134,7 @@ def doubts(campaign: JudgedSweeps) -> tuple[Doubt, ...]:
     """
     points = campaign.points
     found = groups(points)
-    if len(found) < constants.FEWEST:
+    if len(found) < FEWEST:
         return ()
     size = {
         c: usual_size((points.channel(c) / points.Fz)[g.index] for g in found)
@@ -164,9 +165,7 @@ def contradicting_sweep(seen: Sequence[Doubt]) -> Iterator[Facts]:
     refused = [d for d in seen if d.mistake is not None] or [
         d
         for d in seen
-        if d.confirmed
-        and d.gross.share > constants.IMPLAUSIBLE_SHARE
-        and d.gross.vague < constants.GROSS_SHARE
+        if d.confirmed and d.gross.share > constants.IMPLAUSIBLE_SHARE and d.gross.vague < UNLIKE_SHARE
     ]
     if not refused:
         return
@@ -271,12 +270,12 @@ def _doubt(campaign: JudgedSweeps, group: Group, size: Mapping[str, float]) -> D
     if not errors:
         return None
     part = _part(campaign.points, group, found)
-    gross = {e.channel: e.rms for e in errors if e.share > constants.GROSS_SHARE}
+    gross = {e.channel: e.rms for e in errors if e.share > UNLIKE_SHARE}
     rest = np.delete(np.arange(len(campaign.points)), group.index)
     others = campaign.points.select(rest, with_table=False)
     away = partial(_away, part, fitted.simulation, found, {name: size[name] * load for name in found})
     candidates = certain_mistakes(part, campaign.signs, others, by_formula=True) if gross else ()
-    best = explaining(candidates, gross, away, dict.fromkeys(found, constants.GROSS_SHARE))
+    best = explaining(candidates, gross, away, dict.fromkeys(found, UNLIKE_SHARE))
     errors.sort(key=lambda e: -e.ratio)
     doubt = Doubt(
         group.name,

@@ -9,14 +9,13 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import fdtrc
 
-from mffit.constants import FALSE_ALARM
+from mffit.constants import FALSE_ALARM, FEWEST
 from mffit.points import Points, levels
 from mffit.quantities import CHANNELS
 from mffit.scatter import rms
-from mffit.suspicion import constants
 from mffit.suspicion.rule import Outcome, Rule, When
 
-NEAR = int(constants.FEWEST)
+NEAR = int(FEWEST)
 """Number of readings of a leg that extrapolate to the next reading, and number of readings examined on each side of a turn.
 Farther from the turn, smooth model error would look like a departure."""
 

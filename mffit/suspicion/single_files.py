@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import EXPLAINED_SHARE, STRAIGHT, UPRIGHT
+from mffit.constants import EXPLAINED_SHARE, FEWEST, STRAIGHT, UPRIGHT
 from mffit.points import Points
 from mffit.points.constants import UNLOADED
 from mffit.suspicion import constants
@@ -37,7 +37,7 @@ AS_READ = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
 @each_file
 def dead_channel(part: Points, config: Config) -> Iterator[Facts]:
     """Mz and Fy that are the same in every row although the angles change, and a speed of 0, at which there is no slip."""
-    if len(part) < constants.FEWEST or np.ptp(part.alpha) + np.ptp(part.gamma) == 0.0:
+    if len(part) < FEWEST or np.ptp(part.alpha) + np.ptp(part.gamma) == 0.0:
         return
     for column, reading, remedy in (
         ("Mz_Nm", part.Mz, "leave the column out of this file"),
@@ -57,7 +57,7 @@ def repeated_rows(part: Points, config: Config) -> Iterator[Facts]:
     """Rows with the readings of another row of the file, if they are half of it."""
     first = np.unique(readings_of(part), axis=0, return_index=True)[1]
     copies = np.setdiff1d(np.arange(len(part)), first)
-    if len(part) >= constants.FEWEST and 2 * len(copies) >= len(part) and np.ptp(part.Fy) > 0.0:
+    if len(part) >= FEWEST and 2 * len(copies) >= len(part) and np.ptp(part.Fy) > 0.0:
         yield {"line": _line(part, copies[0]), "count": len(copies)}
 
 
@@ -76,7 +76,7 @@ def _line(part: Points, row: int) -> int | None:
 def lone_load(part: Points, config: Config) -> Iterator[Facts]:
     """Largest load over all others of the file; refused if the side force hardly differs from that at the nearest angles."""
     row = int(np.argmax(part.Fz))
-    others = float(np.sort(part.Fz)[-2]) if len(part) >= constants.FEWEST else np.inf
+    others = float(np.sort(part.Fz)[-2]) if len(part) >= FEWEST else np.inf
     if not part.Fz[row] > constants.BEYOND_NOMINAL * others:
         return
     swept = part.alpha if np.ptp(part.alpha) > np.ptp(part.gamma) else part.gamma
@@ -98,7 +98,7 @@ def lone_load(part: Points, config: Config) -> Iterator[Facts]:
 def wild_force(part: Points, config: Config) -> Iterator[Facts]:
     """Fy per load of a few loaded rows."""
     friction = np.where(_loaded(part), np.abs(part.Fy) / part.Fz, 0.0)
-    if 0 < np.sum(friction > CREDIBLE_FRICTION) < constants.FEWEST:
+    if 0 < np.sum(friction > CREDIBLE_FRICTION) < FEWEST:
         row = int(np.argmax(friction))
         yield {"line": _line(part, row), "column": "Fy_N", "force": part.Fy[row], "friction": friction[row]}
 
@@ -139,7 +139,7 @@ def _steep(part: Points, config: Config) -> Iterator[Unusual]:
 def _reached(values: np.ndarray) -> float:
     """The absolute value that at least a few of the values (n,) reach, so that single wild ones do not count; 0 with too few."""
     sizes = np.sort(np.abs(values[np.isfinite(values)]))
-    few = int(constants.FEWEST)
+    few = int(FEWEST)
     return float(sizes[-few]) if len(sizes) >= few else 0.0
 
 
@@ -162,7 +162,7 @@ def _weak(part: Points, config: Config) -> Iterator[Unusual]:
         np.abs(part.gamma) >= CAMBER_THAT_SHOWS_FORCE
     )
     force = np.abs(part.Fy[shows])
-    if np.sum(shows) >= constants.FEWEST and np.max(force / part.Fz[shows]) < constants.SMALLEST_FRICTION:
+    if np.sum(shows) >= FEWEST and np.max(force / part.Fz[shows]) < constants.SMALLEST_FRICTION:
         said = f"is at most {np.max(force):.3g} N at loads of {np.median(part.Fz):.0f} N"
         yield Unusual("Fy_N", said)
 
@@ -177,7 +177,7 @@ def _pressure(part: Points, config: Config) -> Iterator[Unusual]:
 
 def _slippery(part: Points, config: Config) -> Iterator[Unusual]:
     far = (np.abs(part.alpha) >= constants.SIDESLIP_OF_FRICTION.rad) & _loaded(part) & part.free_rolling
-    if np.sum(far) >= constants.FEWEST:
+    if np.sum(far) >= FEWEST:
         friction = np.max(np.abs(part.Fy[far]) / part.Fz[far])
         if friction < constants.USUAL_FRICTION:
             largest = np.degrees(np.max(np.abs(part.alpha[far])))

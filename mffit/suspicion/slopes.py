@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import stdtrit
 
-from mffit.constants import CAMBER_OF_SLOPES, FALSE_ALARM, STRAIGHT, UPRIGHT
+from mffit.constants import CAMBER_OF_SLOPES, FALSE_ALARM, FEWEST, STRAIGHT, UPRIGHT
 from mffit.points import Points, levels
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Facts, Outcome, Rule, rule
@@ -130,7 +130,7 @@ def line(
     ``group`` (n,) are labels of points that share an intercept; without it all do.
     """
     used = used & np.isfinite(y)
-    if np.sum(used) < constants.FEWEST:
+    if np.sum(used) < FEWEST:
         return UNKNOWN
     own = np.zeros(int(np.sum(used))) if group is None else group[used]
     columns = [x[used], *(1.0 * (own == k) for k in np.unique(own))]

@@ -22,7 +22,9 @@ from scipy.special import chdtr, chdtrc, fdtrc, ndtr, ndtri
 from mffit.as_json import keys
 from mffit.constants import (
     CAMBER_OF_SLOPES,
+    CERTAIN_SIGMA,
     FALSE_ALARM,
+    FEWEST,
     LEAST_PREDICTED_SHARE,
     MISFIT_AT_NOISE,
     NAMED_IN_SENTENCE,
@@ -165,7 +167,7 @@ class FinishedFit(ReadOnlyArrays, JudgedMeasurement):
 
     def wrong(self, channel: str, rows: np.ndarray | None = None) -> bool:
         """Whether the misfit of a channel exceeds the noise so far that the fit is not trusted, smooth or not."""
-        return far(self.misfit(channel, rows), constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA)
+        return far(self.misfit(channel, rows), constants.DISTRUSTED_MISFIT, CERTAIN_SIGMA)
 
     def contradicts(self, channel: str, k: int) -> bool:
         """Whether the sweep with index ``k`` contradicts the others; always True without a linear model."""
@@ -244,7 +246,7 @@ def above_noise(fit: FinishedFit) -> Iterator[Facts]:
     """
     noise = "the scatter within its rests" if fit.averaged else "its stated uncertainty"
     for name in fit.used:
-        rough = fit.rough(name, constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA)
+        rough = fit.rough(name, constants.DISTRUSTED_MISFIT, CERTAIN_SIGMA)
         certain = rough or (fit.wrong(name) and fit.cause_is_certain and not fit.against)
         if certain or fit.doubtful(name):
             facts = {"channel": name, "ratio": fit.misfit(name).ratio, "carriers": _carriers(fit, name)}
@@ -265,7 +267,7 @@ def sweep_above_noise(fit: FinishedFit) -> Iterator[Facts]:
         off = {
             k: one.ratio
             for k, one in {**_odd(fit, name), **seen}.items()
-            if far(one, constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA) and fit.contradicts(name, k)
+            if far(one, constants.DISTRUSTED_MISFIT, CERTAIN_SIGMA) and fit.contradicts(name, k)
         }
         if off:
             first = {int(fit.points.sweep[one.index[0]]): -i for i, one in enumerate(fit.against)}
@@ -304,7 +306,7 @@ def unexplained(fit: FinishedFit) -> Iterator[Facts]:
     """Share of a channel's variance that the model explains, unless it is noise; without a stated one also of left-out sweeps."""
     for name, seen in fit.r2.items():
         share, where, out = seen, "", fit.left_out.get(name)
-        if out is not None and out.sweeps >= constants.FEWEST and not fit.misfit(name).n:
+        if out is not None and out.sweeps >= FEWEST and not fit.misfit(name).n:
             predicted = 1.0 - (out.typical / float(np.nanstd(fit.points.channel(name)))) ** 2
             if predicted < share:
                 share, where = predicted, " in a sweep to which it is not fitted (median)"
@@ -324,7 +326,7 @@ def held_against_data(fit: FinishedFit) -> Iterator[Facts]:
     stated = _noise_is_stated(fit)
     for held in fit.held:
         name = held.name
-        certain = stated and held.sigma > constants.CERTAIN_SIGMA and held.share > LEAST_PREDICTED_SHARE
+        certain = stated and held.sigma > CERTAIN_SIGMA and held.share > LEAST_PREDICTED_SHARE
         if held.by_hand:
             certain = held.sigma > constants.DOUBTFUL_SIGMA
             what = f"the readings contradict what [coefficients] sets for {name}"
@@ -364,7 +366,7 @@ def zeros_contradict(measured: JudgedMeasurement) -> Iterator[Facts]:
     """Sideslip zeros of one set-up, from forward and backward runs at all its loads and paths: they are one angle."""
     for z in measured.sideslip_zeros:
         if z.chance < ndtr(-constants.DOUBTFUL_SIGMA):
-            yield {**_apart(z), "asked": z.chance >= ndtr(-constants.CERTAIN_SIGMA)}
+            yield {**_apart(z), "asked": z.chance >= ndtr(-CERTAIN_SIGMA)}
 
 
 def _apart(found: SideslipZeros) -> Facts:
@@ -413,7 +415,7 @@ def sweeps_of_one_way(measured: JudgedMeasurement) -> Iterator[Facts]:
 )
 def unpublished(measured: JudgedMeasurement) -> Iterator[Facts]:
     """Measured camber reduction factor against those of published tyres, of motorcycles alone if the tyre was leaned like one."""
-    row, margin = measured.nominal, constants.CERTAIN_SIGMA * OF_MOTORCYCLES.stdev
+    row, margin = measured.nominal, CERTAIN_SIGMA * OF_MOTORCYCLES.stdev
     if row is None or row.epsilon_gamma is None:
         return
     value, u = row.epsilon_gamma[:2]

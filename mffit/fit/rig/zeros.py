@@ -13,13 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from mffit.constants import COVERAGE_FACTOR_95, LARGEST_CAMBER_REDUCTION
+from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import constants
 from mffit.fit.start import camber_stiffness_terms
 from mffit.measured import Measured
 from mffit.points import Points, main_path
 from mffit.rig import Simulation
 from tir import Quantity
+from tir.constants import EPS_GAMMA_NEAR_ONE
 from tir.parameters import BY_NAME
 
 CAMBER_REDUCTION = "PECP1"
@@ -59,7 +60,7 @@ def turning_zeros(values: Mapping[str, Any], points: Points, measured: Measured)
     start = _start(values, force.value / expected if expected else 0.0)
     if not start:
         # The camber stiffness that gives the measured C_phit = R0 |K_yg0| / (1 - PECP1) with PECP1 unchanged.
-        PECP1 = min(float(values[CAMBER_REDUCTION]), float(LARGEST_CAMBER_REDUCTION))
+        PECP1 = min(float(values[CAMBER_REDUCTION]), 1.0 - EPS_GAMMA_NEAR_ONE)
         C_phit = force.value / float(zero.phi_t[0])
         C_gamma = -(1.0 - PECP1) * C_phit / float(values["UNLOADED_RADIUS"])
         terms = camber_stiffness_terms(values, {row.load: C_gamma}, float(zero.p[0]))
@@ -81,7 +82,7 @@ def _start(values: Mapping[str, Any], ratio: float) -> dict[str, float]:
 
     The force is proportional to the camber stiffness over 1 - PECP1.
     """
-    lowest, highest = BY_NAME[CAMBER_REDUCTION].bounds[0], LARGEST_CAMBER_REDUCTION
+    lowest, highest = BY_NAME[CAMBER_REDUCTION].bounds[0], 1.0 - EPS_GAMMA_NEAR_ONE
     PECP1 = 1.0 - (1.0 - float(values[CAMBER_REDUCTION])) / ratio if ratio else float(highest)
     return {CAMBER_REDUCTION: PECP1} if lowest < PECP1 < highest else {}
 

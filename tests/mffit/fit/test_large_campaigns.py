@@ -10,7 +10,7 @@ import small_rigs
 
 import mffit.constants
 import mffit.diagnosis.constants
-import mffit.rig.constants
+import tir.constants
 from mffit.fit.influences.nuisance_choice import choose
 from mffit.least_squares import Linear, condensed
 
@@ -23,7 +23,7 @@ def built(tmp_path_factory):
 @pytest.fixture
 def in_small_blocks(monkeypatch):
     def change():
-        monkeypatch.setattr(mffit.rig.constants, "POINTS_OF_A_BLOCK", 30)
+        monkeypatch.setattr(tir.constants, "CONDITIONS_PER_BLOCK", 30)
         monkeypatch.setattr(mffit.constants, "ROWS_AT_ONCE", 50)
 
     return change

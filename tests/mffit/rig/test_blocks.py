@@ -7,7 +7,8 @@ import pytest
 import small_rigs
 
 from mffit.points import make_points
-from mffit.rig import Simulation, blocks, constants, successive
+from mffit.rig import Simulation, blocks, successive
+from tir import constants
 
 N, SWEEPS = 60, 4
 NAMES = ("PKY1", "QBZ1", "alpha_0_deg", "hysteresis_deg", "path_radius_m", "wear_per_km", "F0_N@b")
@@ -37,7 +38,7 @@ def test_readings_and_slopes_do_not_depend_on_the_blocks(points, lag, monkeypatc
     simulation = Simulation.of(small_rigs.truth()).with_numbers({**HISTORY, "relaxation_m": lag})
     out, slopes = simulation.sensitivities(points, NAMES)
     apart = simulation.at_rows(points, NAMES)
-    monkeypatch.setattr(constants, "POINTS_OF_A_BLOCK", 7)
+    monkeypatch.setattr(constants, "CONDITIONS_PER_BLOCK", 7)
     in_blocks, slopes_in_blocks = simulation.sensitivities(points, NAMES)
     for channel in out:
         assert in_blocks[channel] == pytest.approx(out[channel], rel=1e-9)
@@ -49,7 +50,7 @@ def test_readings_and_slopes_do_not_depend_on_the_blocks(points, lag, monkeypatc
 
 def test_blocks_hold_every_point_once_and_divide_no_sweep_if_asked(points, monkeypatch):
     for most in (7, 20, 40, 100):
-        monkeypatch.setattr(constants, "POINTS_OF_A_BLOCK", most)
+        monkeypatch.setattr(constants, "CONDITIONS_PER_BLOCK", most)
         divided, whole = (list(blocks(points, by_sweep=by_sweep)) for by_sweep in (False, True))
         assert max(map(len, divided)) <= most
         for found in (divided, whole):
