@@ -41,7 +41,7 @@ FALSE_ALARM = Real(
 FEWEST = Count(
     4,
     "-",
-    "Fewest readings, set-points or sweeps that show something: a slope, a curve, a copy, which one is odd.",
+    "Fewest readings, set-points, sweeps or tyres that show something: a slope, a curve, a copy, a scatter, which one is odd.",
 )
 AT_BOUND_SHARE = Real(
     1e-4, "-", "Distance from a bound, over the width of the bounds, that counts as at the bound."
@@ -92,6 +92,11 @@ LEAST_SHARE_OF_A_SENSE = Real(
 )
 SAME_SIDESLIP = Real(0.05, "deg", "Sideslip angles within this are one set-point: zeros, mirrored points.")
 NAMED_IN_SENTENCE = Count(3, "-", "Most places of a kind that a sentence names; it counts the others.")
+MOST_ROWS = Count(
+    12,
+    "-",
+    "Most bars of a picture, regions of a misfit, and rows of a table in a terminal where a file or page has all.",
+)
 LARGEST_PLAIN_NUMBER = Real(1e7, "-", "Larger numbers are written with a power of ten.")
 SMALLEST_PLAIN_U = Real(1e-6, "-", "A number with a smaller uncertainty is written with a power of ten.")
 TERMINAL_WIDTH = Count(100, "-", "Characters per line in a terminal; two windows fit side by side.")

@@ -96,7 +96,9 @@ SLIP_BEYOND_PEAK = Real(
     "Longitudinal slip beyond the peak of every tyre: programs differ there, comparisons and conversions end.",
 )
 SIDESLIP_BEYOND_PEAK = Real(
-    20.0, "deg", "Sideslip beyond the peak of every tyre: programs differ there, and conversions end."
+    20.0,
+    "deg",
+    "Sideslip beyond the peak of every tyre: programs differ there; conversions and the range of written files end.",
 )
 SMALL_TURN_SLIP = Real(1e-3, "1/m", "Turn slip of a circle of 1 km: moments of spin are linear in it.")
 

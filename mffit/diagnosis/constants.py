@@ -57,9 +57,6 @@ LARGEST_MEMORY = Real(
     "-",
     "Largest correlation between neighbouring errors: beyond, misfit of a model would pass as noise.",
 )
-LONGEST_PAUSE = Real(
-    3.0, "-", "Time between two points over the usual one, above which errors with a memory begin anew."
-)
 NEGLIGIBLE_CHANGE = Real(
     0.01, "-", "Expected chi-square of a direction of changes below which it is left out."
 )
@@ -85,17 +82,12 @@ NOISE_MOVED = Real(
 )
 GENEROUS_EFFECT_SIZE = Real(3.0, "-", "Size of effects over the usual one while the scatter is estimated.")
 # Where the misfit is
-MOST_REGIONS = Count(12, "-", "Most regions that are listed.")
 MOST_UNEXPLAINED_REGIONS = Count(4, "-", "Most regions of unexplained misfit that are listed.")
 MOST_REGION_BINS = Count(6, "-", "Most bins of one variable.")
 REGION_OVERLAP = Real(0.6, "-", "Share of common readings that makes a region repeat a more significant one.")
 REGION_LEVEL_WIDTH = Real(0.1, "-", "Width of a level over the range of the variable.")
 
 # Fit of a hypothesis
-MOST_HYPOTHESIS_STEPS = Count(
-    12, "-", "Most steps of the fit of an explanation; nearly linear ones need fewer."
-)
-HYPOTHESIS_CONVERGED = Real(1e-3, "-", "Relative decrease of chi2 that ends this fit.")
 HARDLY_MOVED = Real(
     0.01,
     "-",

@@ -15,6 +15,7 @@ from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.priors import anchor, beyond_declaration, moving, number, starts, switched, usual_start
 from mffit.diagnosis.smooth import Smooth, SmoothStructure
 from mffit.effects import Effect, Free
+from mffit.fit.constants import REFIT_STEPS, STAGE_TOLERANCE
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve, touches
 from mffit.left_out import moved_without
 from mffit.linearised.gaussian import Informed
@@ -145,8 +146,8 @@ class DiagnosisProblem:
         found = solve(
             plain.within(own, fixed, prior),
             [*numbers, *units],
-            max_steps=constants.MOST_HYPOTHESIS_STEPS,
-            tolerance=constants.HYPOTHESIS_CONVERGED,
+            max_steps=REFIT_STEPS,
+            tolerance=STAGE_TOLERANCE,
         )
         values = {**fixed, **prior.numbers(own, found.x)}
         errors = self._standard_errors(found, prior.unit(len(own)))
@@ -232,8 +233,8 @@ class DiagnosisProblem:
         found = solve(
             self.within([n.name for n in numbers], fixed),
             numbers,
-            max_steps=constants.MOST_HYPOTHESIS_STEPS,
-            tolerance=constants.HYPOTHESIS_CONVERGED,
+            max_steps=REFIT_STEPS,
+            tolerance=STAGE_TOLERANCE,
         )
         values = {**fixed, **found.values}
         occam = 0.0

@@ -11,6 +11,7 @@ from mffit.diagnosis.noise import MemorySpan, Noise, Origin, Scatter
 from mffit.errors import InputError
 from mffit.fit.constants import NOMINAL_NOISE_SHARE
 from mffit.points import Points
+from mffit.points.constants import GAP_OVER_STEP
 from mffit.points.noise import neighbour_noise
 from mffit.quantities import CHANNELS, SIDEWAYS, u_column
 from mffit.rig import Simulation
@@ -62,7 +63,7 @@ def _in_time(points: Points) -> tuple[np.ndarray, dict[MemorySpan, np.ndarray]]:
     step, next_file = np.diff(when[order]), np.diff(points.file[order]) != 0
     pause = np.zeros(len(step), dtype=bool)
     if timed and np.any(step > 0.0):
-        pause = (step < 0.0) | (step > constants.LONGEST_PAUSE * np.median(step[step > 0.0]))
+        pause = (step < 0.0) | (step > GAP_OVER_STEP * np.median(step[step > 0.0]))
     spans = {MemorySpan.FILE: pause | next_file}
     if timed and len(points.files) > 1:
         spans[MemorySpan.PROGRAMME] = pause

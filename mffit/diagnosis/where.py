@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from mffit.constants import FEWEST
+from mffit.constants import FEWEST, MOST_ROWS
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import Noise
 from mffit.points import Points, levels
@@ -74,7 +74,7 @@ def _distinct(ranked: list[tuple[Region, frozenset[int]]]) -> tuple[Region, ...]
             for _, other in kept
         ):
             kept.append((region, members))
-        if len(kept) == constants.MOST_REGIONS:
+        if len(kept) == MOST_ROWS:
             break
     return tuple(region for region, _ in kept)
 

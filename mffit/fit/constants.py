@@ -90,7 +90,9 @@ LIMIT_WEIGHT_OF_DERIVED_FILE = Real(
 # Passes of the fit
 POINTS_OF_A_STAGE = Count(600, "-", "Most points of a first pass; the polish uses all.")
 STRIDE_DIVISOR = Count(8, "-", "Factor by which the points increase from pass to pass of the polish.")
-STAGE_TOLERANCE = Real(1e-3, "-", "Relative gain that ends an early pass of a search.")
+STAGE_TOLERANCE = Real(
+    1e-3, "-", "Relative gain that ends an early pass of a search, or the fit of an explanation."
+)
 REFIT_STEPS = Count(12, "-", "Most least-squares steps of a refit that starts near its solution.")
 REFIT_TOLERANCE = Real(1e-4, "-", "Relative gain that ends such a refit.")
 
@@ -106,7 +108,6 @@ MOST_DRAWS = Count(20, "-", "Most draws of a tyre until the physical limits hold
 RANGE_SHARES = Series(
     (1.0, 0.75, 0.5, 0.25), "-", "Shares of the way to the intended end of a range that are tried in turn."
 )
-WRITTEN_ALPMAX = Real(20.0, "deg", "Intended sideslip range of a file.")
 WRITTEN_CAMMAX = Real(45.0, "deg", "Camber up to which a file's range may exceed the tested one.")
 BEYOND_TESTED = Real(
     1.5, "-", "End of the range of load, camber and slip that a file may be used in, over the tested one."

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.fit import constants
+from tir.constants import SIDESLIP_BEYOND_PEAK
 from tir.derivatives import Traced, gradient, plain
 from tir.equations import aligning, lateral, longitudinal, normalise, stiffness, turn_slip
 from tir.equations.elementary import cos, magic_angle
@@ -104,7 +105,7 @@ def _under_slip(p: Any, envelope: Envelope, *conditions: np.ndarray) -> list[Any
     Fx has the sign of kappa; the weights G_xa and G_yk lie between 0 and a little above 1, their slope factors are positive, and
     their curvature factors are at most 1.
     """
-    k, a = constants.BEYOND_TESTED * envelope.kappa, max(constants.WRITTEN_ALPMAX.rad, envelope.alpha)
+    k, a = constants.BEYOND_TESTED * envelope.kappa, max(SIDESLIP_BEYOND_PEAK.rad, envelope.alpha)
     q = _with_slips(p, conditions, [(k, 0.0), (-k, 0.0)])
     K_xk, mu_x = stiffness.longitudinal_slip_stiffness(p, q), stiffness.longitudinal_friction(p, q)
     force = np.sign(q.kappa) * longitudinal.pure(p, q, turn_slip.NO_SPIN, K_xk, mu_x)

@@ -12,6 +12,7 @@ from mffit.constants import UPRIGHT
 from mffit.fit import constants
 from mffit.fit.constraints import Envelope, characteristics, grid, violations
 from mffit.points import Points, levels
+from tir.constants import SIDESLIP_BEYOND_PEAK
 from tir.evaluate import evaluate
 
 NAMES = ("PRESMIN", "PRESMAX", "FZMIN", "FZMAX", "ALPMIN", "ALPMAX", "CAMMIN", "CAMMAX")
@@ -148,7 +149,7 @@ def _wished_ends(tested: Mapping[str, float]) -> dict[str, float]:
         "PRESMIN": (1.0 - constants.WRITTEN_PRESSURE_SHARE) * tested["PRESMIN"],
         "PRESMAX": (1.0 + constants.WRITTEN_PRESSURE_SHARE) * tested["PRESMAX"],
         "CAMMAX": max(gamma, wider_gamma),
-        "ALPMAX": max(constants.WRITTEN_ALPMAX.rad, alpha),
+        "ALPMAX": max(SIDESLIP_BEYOND_PEAK.rad, alpha),
     }
 
 

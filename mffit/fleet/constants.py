@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from tir.constant import Count, Real
+from tir.constant import Real
 
-FEWEST_TYRES_FOR_SCATTER = Count(
-    4, "-", "Fewest tyres whose own scatter is estimated; fewer have that of tyres in general."
-)
 INFORMED_VARIANCE_SHARE = Real(
     0.8, "-", "A tyre's points inform a number if the variance falls below this share of the prior's."
 )

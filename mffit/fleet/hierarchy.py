@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.as_json import keys
+from mffit.constants import FEWEST
 from mffit.fit.priors import scatter
 from mffit.fleet import constants
 from mffit.linearised.mixed import Mixed, MixedPosterior, Variances
@@ -34,7 +35,7 @@ class Population:
     @property
     def assumed(self) -> bool:
         """Whether the scatter is that of tyres in general, because there are too few tyres."""
-        return self.tyres < constants.FEWEST_TYRES_FOR_SCATTER
+        return self.tyres < FEWEST
 
 
 keys(Population, "* assumed")
@@ -80,7 +81,7 @@ def estimate(found: Sequence[Numbers]) -> Hierarchy:
     """
     tyres = _Tyres(found)
     tau = tyres.general.copy()
-    learnt = tyres.count >= constants.FEWEST_TYRES_FOR_SCATTER
+    learnt = tyres.count >= FEWEST
     for _ in range(200 if learnt.any() else 0):
         # Dividing by the number of tyres less one avoids underestimating the scatter.
         mean_square = tyres.squares(tau) / np.maximum(tyres.count - 1, 1)

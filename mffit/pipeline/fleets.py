@@ -14,6 +14,7 @@ from threadpoolctl import threadpool_limits
 from mffit import as_json
 from mffit import fleet as combining
 from mffit.comparison import PEAKS
+from mffit.constants import FEWEST
 from mffit.csv_tables import write_csv
 from mffit.errors import InputError
 from mffit.fit import priors
@@ -179,7 +180,7 @@ def priors_of_rig(rig: Hierarchy, conditions: tuple[float, float], tyres: int) -
     known = {
         name: priors.Prior(p.mean, math.hypot(p.u_mean, p.scatter))
         for name, p in rig.population.items()
-        if p.tyres >= combining.constants.FEWEST_TYRES_FOR_SCATTER
+        if p.tyres >= FEWEST
     }
     load, pressure = conditions
     return priors.fleet_content({"FNOMIN": load, "NOMPRES": pressure}, tyres, known) if known else None

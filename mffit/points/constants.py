@@ -63,7 +63,9 @@ SMALLEST_SWEEP_OF_SLIP = Real(
     "-",
     "Smallest range of a sweep of longitudinal slip; every tyre has a longitudinal force beyond it.",
 )
-GAP_OVER_STEP = Real(5.0, "-", "Smallest gap in time over the usual step.")
+GAP_OVER_STEP = Real(
+    5.0, "-", "Smallest gap in time over the usual step: readings begin anew, and errors with a memory."
+)
 BLOCKS_OF_STRETCH = Count(10, "-", "Blocks of a stretch; leading ones are compared with its second half.")
 
 # Means of moving sweeps

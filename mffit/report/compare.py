@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from mffit.comparison import Comparison, CurveGap, wording
+from mffit.constants import MOST_ROWS
 from mffit.fit.plan import channels_of
 from mffit.quantities import CHANNELS
-from mffit.report import constants, labels, page, style
+from mffit.report import labels, page, style
 from mffit.report.build_view import Overlay, channel_rows
 from mffit.report.curves import curves, model_lines
 from mffit.report.drawing.records import (
@@ -54,7 +55,7 @@ def _panel(found: Comparison, gap: CurveGap) -> Panel:
 
 def differences(found: Comparison) -> Sheet:
     """The largest differences of numbers over their standard uncertainties."""
-    rows = [row for row in found.unequal if row.z is not None][: constants.MOST_ROWS]
+    rows = [row for row in found.unequal if row.z is not None][:MOST_ROWS]
     if not rows:
         return NOTHING
     z, significant = np.array([float(row.z or 0.0) for row in rows]), found.significant

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mffit.constants import FEWEST
 from mffit.fleet import EPSILON, Fleet
-from mffit.fleet.constants import FEWEST_TYRES_FOR_SCATTER
 from mffit.quantities import COMPARED, DIRECT
 from mffit.report import labels, page, style
 from mffit.report.drawing.records import Look, Panel, Sheet, Trace, in_rows, listed
@@ -102,7 +102,7 @@ def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
         found,
         headline=headline(found),
         misfits=misfit_channels(found),
-        enough=FEWEST_TYRES_FOR_SCATTER,
+        enough=FEWEST,
         spin=SPIN,
         priors=priors,
     )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.constants import COVERAGE_FACTOR_95, NAMED_IN_SENTENCE, UPRIGHT
+from mffit.constants import COVERAGE_FACTOR_95, MOST_ROWS, NAMED_IN_SENTENCE, UPRIGHT
 from mffit.diagnosis import Diagnosis
 from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.selection import Contest
@@ -223,7 +223,7 @@ def evidence(diagnosis: Diagnosis) -> Sheet:
 
 def _candidates(step: Contest, named: str) -> Panel:
     gained = [(trial.log_evidence - step.before.log_evidence, trial.effects[-1]) for trial in step.trials]
-    rows = sorted(gained, key=lambda row: -row[0])[: constants.MOST_ROWS]
+    rows = sorted(gained, key=lambda row: -row[0])[:MOST_ROWS]
     gains = np.array([max(gain, LEAST_GAIN) for gain, _ in rows])
     passed = rows[0][0] > step.threshold
     title = f"Instead of {named}" if named else "One effect alone"

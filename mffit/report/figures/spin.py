@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from mffit.constants import UPRIGHT
+from mffit.constants import MOST_ROWS, UPRIGHT
 from mffit.measured import Measured
 from mffit.measured.constants import CUBIC_SIDESLIP
 from mffit.points import main_path
 from mffit.quantities import CHANNELS
-from mffit.report import constants, labels, style
+from mffit.report import labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import (
@@ -78,7 +78,7 @@ def _among_published(name: str, measured: Measured) -> Panel:
 
 
 def _budget(measured: Measured) -> Panel:
-    lines = sorted(measured.budget, key=lambda line: -abs(line.contribution))[: constants.MOST_ROWS]
+    lines = sorted(measured.budget, key=lambda line: -abs(line.contribution))[:MOST_ROWS]
     widths = np.array([abs(line.contribution) for line in lines])
     total = measured.epsilon_gamma.u if measured.epsilon_gamma is not None else 0.0
     return Panel(

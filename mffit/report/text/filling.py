@@ -6,11 +6,11 @@ from functools import cache, partial
 from typing import TYPE_CHECKING
 
 from mffit import rounding
-from mffit.constants import NAMED_IN_SENTENCE
+from mffit.constants import MOST_ROWS, NAMED_IN_SENTENCE
 from mffit.errors import shortened
 from mffit.points.left_out import together
 from mffit.quantities import CHANNELS, COMPARED, CONDITIONS, DIRECT, OF_ROAD
-from mffit.report import constants, words
+from mffit.report import words
 from mffit.report.text import layout
 from mffit.rig_errors import meaning_of
 from mffit.templates import environment
@@ -40,7 +40,7 @@ def templates(*, escaped: bool) -> Environment:
         "conditions": CONDITIONS,
         "direct": DIRECT,
         "meaning_of": meaning_of,
-        "most": int(constants.MOST_ROWS),
+        "most": int(MOST_ROWS),
         "script": script,
         "words": words,
     }

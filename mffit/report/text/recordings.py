@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mffit.constants import MOST_ROWS
 from mffit.points.stretch import MOVE
 from mffit.recordings import Sniffed
 from mffit.recordings.project_file import how_to_agree
 from mffit.recordings.recording import SniffedRecording
 from mffit.recordings.sniffed import Level, axes_reason
-from mffit.report import constants
 from mffit.report.text.layout import blocks, paragraphs, table
 from mffit.sweeps.about import names_tyre, title_of
 
@@ -140,7 +140,7 @@ def _stretches(sniffed: Sniffed) -> str:
     other = sorted((note for note in lost if note.kind != MOVE), key=lambda note: note.begin_s)
     rows = [
         (note.sweep, note.kind, f"{note.begin_s:.2f}", f"{note.end_s:.2f}", note.dropped)
-        for note in other[: constants.MOST_ROWS]
+        for note in other[:MOST_ROWS]
     ]
     shown = (
         table(("part of", "kind", "from [s]", "to [s]", "why it gives no point"), rows, left=2)

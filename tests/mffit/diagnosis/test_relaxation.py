@@ -17,7 +17,7 @@ from tir.evaluate import evaluate
 
 SIGMA = 0.28  # m
 CONFIG = SimpleNamespace(
-    tyre=SimpleNamespace(name="moving"),
+    tyre=SimpleNamespace(name="moving", nominal_load=1500.0),
     model=SimpleNamespace(turn_slip=True, star=False, u_coefficients=0.0),
     rig=RigTable(type="flat-track"),
 )

@@ -29,7 +29,7 @@ from mffit.rig import Simulation
 from mffit.rig_errors import NO_FAULTS
 
 CONFIG = SimpleNamespace(
-    tyre=SimpleNamespace(name="warm"),
+    tyre=SimpleNamespace(name="warm", nominal_load=1400.0),
     model=SimpleNamespace(turn_slip=True, star=False, u_coefficients=0.0),
     rig=RigTable(type="flat-track"),
 )

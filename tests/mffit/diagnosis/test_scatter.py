@@ -168,7 +168,7 @@ def taken(t, file, lines):
 
 def test_sweeps_that_follow_each_other_in_time_are_one_chain():
     """File b was run first, then a at once, and c after a pause."""
-    t, file = np.array([40.0, 50.0, 20.0, 10.0, 95.0, 105.0]), np.array([0, 0, 1, 1, 2, 2])
+    t, file = np.array([40.0, 50.0, 20.0, 10.0, 115.0, 125.0]), np.array([0, 0, 1, 1, 2, 2])
     chains, turn = taken(t, file, np.arange(6))
     assert turn == [2, 3, 1, 0, 4, 5]
     assert chains[MemorySpan.FILE] == [1, 1, 0, 0, 2, 2]

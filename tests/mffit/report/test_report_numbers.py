@@ -10,6 +10,7 @@ import zipfile
 import numpy as np
 import pytest
 
+from mffit.constants import MOST_ROWS
 from mffit.report import constants, page
 from mffit.report.build_view import view_of
 from mffit.report.drawing.records import Look, Panel, Sheet, Trace
@@ -46,7 +47,7 @@ def test_parts_are_named_as_in_the_legend(view):
 def test_bars_and_error_bars_are_named_by_the_words_at_the_axis(view):
     found = rows(spin.camber_reduction(view))
     budget = {row["y"]: float(row["x"]) for row in found if "budget" in row["panel"]}
-    largest = sorted(view.build.measured.budget, key=lambda line: -line.contribution)[: constants.MOST_ROWS]
+    largest = sorted(view.build.measured.budget, key=lambda line: -line.contribution)[:MOST_ROWS]
     assert budget == pytest.approx({line.source: line.contribution for line in largest}, rel=1e-5)
     own = next(row for row in found if row["y"] == "front-1")
     epsilon = view.build.measured.epsilon_gamma
