@@ -166,9 +166,6 @@ KNOWN_BESIDE_UNKNOWN = Real(
     "diagnosis_study.py --outside --seed 100 and --mixed --seed 500: a third of them right, docs/evidence-diagnosis.md",
 )
 LEAST_ALTERNATIVE = Real(1e-4, "-", "Weight below which an effect is not listed as an alternative.")
-UNCHANGED_SHARE_OF_U = Real(
-    0.5, "-", "Change of eps_gamma over its uncertainty below which it is called well within it."
-)
 
 # Validation
 PARTS_OF_A_RUN = Count(

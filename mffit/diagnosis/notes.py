@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from mffit.constants import ASSUMED_NOISE_SHARE
-from mffit.diagnosis import constants
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import NEEDS, Effect
 from mffit.quantities import CHANNELS
@@ -225,6 +224,6 @@ class DirectMethodRedone:
         now = _with_u(after.value, after.u)
         if to_uncertainty(before.value, after.u) == to_uncertainty(after.value, after.u):
             return f"eps_gamma stays {now} (k = 1) with {names} corrected: the direct method allows for it."
-        within = abs(after.value - before.value) < constants.UNCHANGED_SHARE_OF_U * after.u
-        told = ", a change well within its uncertainty" if within else ""
+        within = abs(after.value - before.value) < after.u
+        told = ", a change within its uncertainty" if within else ""
         return f"eps_gamma was {_with_u(before.value, before.u)} with {names}; corrected it is {now} (k = 1){told}."

@@ -242,7 +242,7 @@ def test_only_a_separating_run_is_recommended():
         ),
         (
             DirectMethodRedone(("backlash",), Quantity(-0.083, 0.065, "-"), Quantity(-0.063, 0.063, "-")),
-            "was -0.083 +- 0.065 with backlash; corrected it is -0.063 +- 0.063 (k = 1), a change well within its uncertainty.",
+            "was -0.083 +- 0.065 with backlash; corrected it is -0.063 +- 0.063 (k = 1), a change within its uncertainty.",
         ),
         (
             DirectMethodRedone(("backlash", "gain"), WRONG, RIGHT),
