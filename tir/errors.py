@@ -52,7 +52,8 @@ class Problem:
 def counted(number: int, what: str) -> str:
     """A number and a noun, with the plural on the first word: "1 key of MF 6.2", "2 keys of MF 6.2"."""
     head, *rest = what.split(" ", 1)
-    return " ".join([str(number), head + "s" * (number != 1), *rest])
+    plural = "es" if head.endswith("ch") else "s"
+    return " ".join([str(number), head + plural * (number != 1), *rest])
 
 
 def listed(words: Sequence[str]) -> str:

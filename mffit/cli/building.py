@@ -12,6 +12,7 @@ import click
 from mffit.cli.console import Voice, voiced
 from mffit.cli.options import PATH, out_option, strict
 from mffit.errors import InputError
+from tir.errors import counted
 
 if TYPE_CHECKING:
     from mffit.results import BuildOutcome, BuildResult
@@ -106,7 +107,7 @@ def _summary(result: BuildResult, tyre_toml: Path, out: Path | None, coefficient
     where = out or tyre_toml.parent / "out"
     has_report = (where / "report.html").exists()
     tables = "report.html, result.json, points.csv, plots" if has_report else "result.json, points.csv"
-    drawn = f", ensemble ({len(result.members)} files)" if result.members else ""
+    drawn = f", ensemble ({counted(len(result.members), 'file')})" if result.members else ""
     again = ["mffit", "build", str(tyre_toml), *([] if out is None else ["--out", str(out)])]
     again += [] if has_report else ["--no-report"]
     again += [word for one in coefficients for word in ("--set", one)]

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from mffit.brief import Brief
-from mffit.constants import NAMED_IN_SENTENCE, SAME_SIDESLIP, STRAIGHT, UPRIGHT
+from mffit.constants import SAME_SIDESLIP, STRAIGHT, UPRIGHT
 from mffit.parts import constants
 from mffit.points import Points, levels
+from tir.errors import counted, listed, some
 from tir.frozen import ReadOnlyArrays
 
 READ = ("Fy", "Mz", "u_Fy", "u_Mz")
@@ -63,7 +64,9 @@ class Parts(ReadOnlyArrays, Brief):
     u_Mz_odd: np.ndarray  #: [Nm]
     paired: np.ndarray  #: "exact" | "interpolated" | "unpaired"
     partner: np.ndarray  #: index of the mirror, -1 if interpolated or unpaired
-    unpaired: tuple[str, ...]  #: one sentence per sweep with points whose mirror the programme lacks
+    unpaired: tuple[
+        str, ...
+    ]  #: a sentence about the points whose mirror the programme lacks, if there are any
     alpha_odd: np.ndarray  #: sideslip of the odd part [rad]: the reading, corrected for known play
 
     def among(self, points: Points, rows: np.ndarray) -> Parts:
@@ -134,22 +137,20 @@ def split(points: Points) -> Parts:
         u_Mz_odd=np.hypot(points.u_Mz, mirror["u_Mz"]) / 2.0,
         paired=paired,
         partner=partner,
-        unpaired=_sentences(points, lacking),
+        unpaired=_without_mirror(points, lacking),
         alpha_odd=points.alpha,
     )
 
 
-def _sentences(points: Points, lacking: np.ndarray) -> tuple[str, ...]:
-    """A sentence per sweep about the points of the mask (n,), which have no mirror."""
-    out, most = [], NAMED_IN_SENTENCE
-    for k in np.unique(points.sweep[lacking]):
-        rows = np.flatnonzero(lacking & (points.sweep == k))
-        shown = ", ".join(
-            f"({np.degrees(points.alpha[i]):.2g}, {np.degrees(points.gamma[i]):.2g})" for i in rows[:most]
-        )
-        more = f" and {len(rows) - most} more" if len(rows) > most else ""
-        out.append(
-            f"{points.sweep_names[k]}: {len(rows)} points have no mirror (-alpha, -gamma) and count only as raw points: "
-            f"(alpha, gamma) = {shown}{more} deg"
-        )
-    return tuple(out)
+def _without_mirror(points: Points, lacking: np.ndarray) -> tuple[str, ...]:
+    """A sentence about the points of the mask (n,), which have no mirror, with their sweeps and angles; none without any."""
+    if not np.any(lacking):
+        return ()
+    alpha_deg, gamma_deg = np.degrees(points.alpha[lacking]), np.degrees(points.gamma[lacking])
+    angles = [f"({a:.2g}, {g:.2g})" for a, g in zip(alpha_deg, gamma_deg, strict=True)]
+    sweeps, numbers = np.unique(points.sweep[lacking], return_counts=True)
+    each = [f"{n} in {points.sweep_names[k]}" for k, n in zip(sweeps, numbers, strict=True)]
+    return (
+        f"no mirror (-alpha, -gamma) was measured for {counted(len(angles), 'point')}, which can only be used raw: "
+        f"{listed(each)}; (alpha, gamma) = {some(list(dict.fromkeys(angles)))} deg",
+    )

@@ -12,6 +12,7 @@ from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, ROAD
 from mffit.planning.plan import Identified, NextRun, Plan
 from mffit.quantities import DIRECT
 from mffit.rounding import decimals_of
+from tir.errors import counted
 
 EPS = DIRECT["epsilon_gamma"].ascii
 BACKWARD_CAMBER = BY_ID["backward-camber"]
@@ -25,9 +26,10 @@ def headline(plan: Plan) -> str:
             f"None of the runs tried lowers {plan.goal.label} by {least} or more; it is {shown(plan, plan.now)}. The budget "
             "shows what limits it."
         )
-    count = len(plan.steps)
-    runs = "1 addition" if count == 1 else f"{count} additions"
-    return f"{runs} with {plan.points} points: {plan.goal.label} from {shown(plan, plan.now)} to {shown(plan, plan.then)}."
+    runs, points = counted(len(plan.steps), "addition"), counted(plan.points, "point")
+    return (
+        f"{runs} with {points}: {plan.goal.label} from {shown(plan, plan.now)} to {shown(plan, plan.then)}."
+    )
 
 
 def measure(plan: Plan | NextRun) -> str:

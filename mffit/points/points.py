@@ -12,6 +12,7 @@ import pandas as pd
 from mffit.points import constants
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.sweeps.sweep import MeasuredRows
+from tir.errors import counted
 
 INTEGER = frozenset({"direction", "mount", "sweep", "file", "line", "last_line", "setup"})
 SHARED = frozenset({"sweep_names", "files", "setups", "table"})
@@ -58,7 +59,7 @@ class Points(MeasuredRows):
     @property
     def headline(self) -> str:
         """Number of points and sweeps, in words."""
-        return f"{len(self)} in {len(self.sweep_names)} sweeps"
+        return f"{len(self)} in {counted(len(self.sweep_names), 'sweep')}"
 
     def channel(self, name: str) -> np.ndarray:
         """Readings (n,) of a channel of :data:`mffit.quantities.CHANNELS`, in its unit; NaN where it was not measured."""

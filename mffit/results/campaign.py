@@ -10,6 +10,7 @@ from mffit.brief import Brief
 from mffit.measured import Alignment, Measured
 from mffit.planning import NextRun
 from tir import Quantity
+from tir.errors import counted
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +52,7 @@ class WatchedCampaign(Brief):
     def headline(self) -> str:
         """Progress of the campaign, as a sentence."""
         every = {*self.taken, *self.awaited, *self.refused}
-        return f"{len(self.taken)} of {len(every)} files, {self.points} points"
+        return f"{len(self.taken)} of {counted(len(every), 'file')}, {counted(self.points, 'point')}"
 
 
 keys(

@@ -50,7 +50,7 @@ def dead_channel(part: Points, config: Config) -> Iterator[Facts]:
 
 @rule(
     id="repeated-rows",
-    sentence="holds {count} rows a second time, with the same readings; remove the copies, as they would count as more readings",
+    sentence="holds rows twice, with the same readings ({count} copies); remove the copies, as they would count as more readings",
 )
 @each_file
 def repeated_rows(part: Points, config: Config) -> Iterator[Facts]:

@@ -33,7 +33,7 @@ from mffit.sweeps.frames import (
 )
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.sweep import ExcludedRows, Sweep, Sweeps
-from tir.errors import some
+from tir.errors import counted, some
 
 NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
@@ -284,8 +284,8 @@ def _contradicting(columns: Columns, entry: SweepTable) -> list[str]:
     if not differs:
         return []
     return [
-        f"{entry.file}: {differs} rows of column direction are not {entry.direction}, the direction of the [[sweep]]; "
-        "the column is used"
+        f"{entry.file}: column direction is not {entry.direction}, the direction of the [[sweep]], in "
+        f"{counted(differs, 'row')}; the column is used"
     ]
 
 

@@ -17,6 +17,7 @@ from mffit.points.clock import sense
 from mffit.rig import distance_km
 from mffit.rig_errors import BY_NAME, OF_RUN, number_of
 from mffit.suspicion import parts_of_sweeps
+from tir.errors import counted
 
 TEMPERATURE = "temperature"
 """Key of [fit] for the influences of the tyre's temperature, whose fit is written to a second file."""
@@ -155,7 +156,11 @@ def _distances(points: Points) -> str:
 
 def _runs(points: Points) -> str:
     count = len(np.unique(points.sweep))
-    return "" if count >= FEWEST_SWEEPS_TO_PREDICT else f"{count} runs do not show how runs differ"
+    return (
+        ""
+        if count >= FEWEST_SWEEPS_TO_PREDICT
+        else f"too few to show how runs differ: {counted(count, 'run')}"
+    )
 
 
 NUISANCES = (

@@ -11,6 +11,7 @@ from mffit.points.stretch import MOVE, StretchNote
 from mffit.report import style
 from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Span, Trace
 from mffit.sweeps import Sweep
+from tir.errors import counted
 
 KEPT = Look(colour=style.CALM, opacity=0.13)
 DROPPED = Look(colour=style.CONTRAST, opacity=0.13)
@@ -52,8 +53,8 @@ def recording(runs: Sequence[Sweep], notes: Sequence[StretchNote]) -> Sheet:
         rows=[[panel] for panel in panels],
         height=0.85,
         key={
-            f"{sum(note.points > 0 for note in notes)} stretches give points": KEPT,
-            f"{sum(note.points == 0 for note in notes)} stretches give none": DROPPED,
+            f"points from {counted(sum(note.points > 0 for note in notes), 'stretch')}": KEPT,
+            f"none from {counted(sum(note.points == 0 for note in notes), 'stretch')}": DROPPED,
         },
         wide=True,
     )

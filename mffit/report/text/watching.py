@@ -11,7 +11,7 @@ from mffit.quantities import CONDITIONS, DIRECT
 from mffit.report.text.layout import wrapped
 from mffit.results.campaign import Arrival, WatchedCampaign
 from mffit.rounding import ascii_only, number, stated, with_u
-from tir.errors import some
+from tir.errors import counted, some
 
 INDENT = "  "
 
@@ -53,7 +53,7 @@ def arrival_line(one: Arrival) -> str:
     if one.state == "gone":
         return f"{one.file} is gone"
     if one.state == "taken":
-        return f"{one.file}: {one.points} points"
+        return f"{one.file}: {counted(one.points, 'point')}"
     name = "" if Path(one.file).name in one.why else f"{one.file}: "
     return f"not taken: {name}{one.why}"
 

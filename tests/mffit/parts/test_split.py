@@ -156,14 +156,22 @@ def test_on_a_straight_path_nothing_is_decomposed_and_nothing_remarked():
     assert np.all(np.isnan([parts.Fy_odd, parts.Fy_even, parts.Mz_odd, parts.Mz_even, parts.u_Fy_odd]))
 
 
-@pytest.mark.parametrize(("count", "more"), [(3, ""), (4, " and 1 more")])
-def test_at_most_three_points_without_mirror_are_named(count, more):
+@pytest.mark.parametrize(("count", "more"), [(6, ""), (7, " and 1 more")])
+def test_at_most_six_points_without_mirror_are_named(count, more):
     points, _, _ = sweep(1.0 + np.arange(count), 2.0, sweep_names=("camber.csv",))
     (sentence,) = split(points).unpaired
     assert sentence == (
-        f"camber.csv: {count} points have no mirror (-alpha, -gamma) and count only as raw points: "
-        f"(alpha, gamma) = (1, 2), (2, 2), (3, 2){more} deg"
+        f"no mirror (-alpha, -gamma) was measured for {count} points, which can only be used raw: {count} in camber.csv; "
+        f"(alpha, gamma) = (1, 2), (2, 2), (3, 2), (4, 2), (5, 2), (6, 2){more} deg"
     )
+
+
+def test_points_without_mirror_of_several_sweeps_are_one_sentence_that_names_each_angle_once():
+    alpha_deg = np.array([1.0, 5.0, 5.0])
+    points, _, _ = sweep(alpha_deg, sweep=np.array([0, 0, 1]), sweep_names=("a.csv", "b.csv"))
+    (sentence,) = split(points).unpaired
+    assert "for 3 points" in sentence
+    assert sentence.endswith(": 2 in a.csv and 1 in b.csv; (alpha, gamma) = (1, 0), (5, 0) deg")
 
 
 def test_the_parts_of_the_moment_have_its_uncertainty():

@@ -62,4 +62,4 @@ def test_what_gives_points_and_what_was_dropped_is_coloured(sheet):
         (0.0, 3.0),
         (pytest.approx(5.0), pytest.approx(9.0)),
     ]
-    assert list(sheet.key) == ["1 stretches give points", "2 stretches give none"]
+    assert list(sheet.key) == ["points from 1 stretch", "none from 2 stretches"]

@@ -333,7 +333,11 @@ def sentence(rule: str, points: Points) -> str:
         ),
         ("hot-tread", tyre(T=166.0), "T_degC is 166 degC in the middle in"),
         ("copied-sweep", sweeps(SOUND, SOUND), "holds exactly the readings of s0"),
-        ("repeated-rows", SOUND.select(np.tile(np.arange(len(SOUND)), 2)), "holds 7 rows a second time"),
+        (
+            "repeated-rows",
+            SOUND.select(np.tile(np.arange(len(SOUND)), 2)),
+            "holds rows twice, with the same readings (7 copies)",
+        ),
     ],
 )
 def test_a_refusal_says_its_numbers(rule, points, facts):
