@@ -24,6 +24,7 @@ from mffit.sweeps.frames import FORCES, MOMENTS, letter_of
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import converted, is_unit, spelt
 from mffit.sweeps.wide import FROM_NAMES
+from tir.errors import counted
 
 WITH_UNIT = re.compile(r"(.+?)(?:\s*[/,_]\s*|\s+in\s+)([^_,\s]+)")
 """A heading that ends with its unit: ``Fz / N``, ``Fz, N``, ``Fz in N``, ``Fz_N``."""
@@ -123,8 +124,8 @@ def _asked(raw: RawTable, found: Mapping[str, Guess]) -> list[str]:
         )
     if not found.keys() & {"time_s", "t_s"}:
         asked.append(
-            f"no time: each of {len(raw)} rows is treated as a finished point; if they are samples of a recording, name its "
-            'time under [columns], for example time_s = "..."'
+            "no time: each row is treated as a finished point; if rows are samples of a recording, name its time under "
+            '[columns], for example time_s = "..."'
         )
     return asked
 
@@ -137,7 +138,7 @@ def _rolling(raw: RawTable) -> tuple[RawTable, list[str]]:
     rests = standing(speeds[0].values)
     count = int(np.sum(rests))
     return (
-        (raw.of_rows(~rests), [f"{count} of {len(raw)} rows are at standstill and left out"])
+        (raw.of_rows(~rests), [f"left out at standstill: {count} of {counted(len(raw), 'row')}"])
         if count
         else (raw, [])
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -21,6 +22,7 @@ from mffit.recordings.unstated import Guess
 from mffit.suspicion.all_files import LevelsOfLoad
 from mffit.sweeps.about import named_tyre, title_of
 from mffit.sweeps.formats import stem
+from tir.errors import counted
 
 MOST_OF_SIZE = 60
 """Maximum number of characters of a size or title in ``tyre.toml``."""
@@ -189,7 +191,7 @@ def _speed(sniffed: Sniffed) -> float | None:
         return None
     levels = sniffed.conditions["speed"]
     default = TyreTable.model_fields["nominal_speed"].default
-    speed = max(levels, key=lambda level: level.stretches).value if levels else default
+    speed = max(levels, key=lambda level: level.points).value if levels else default
     return float(f"{speed:.3g}")
 
 
@@ -228,11 +230,17 @@ def _sweeps(
     shared: Mapping[str, Column],
     remarks_of_all: Collection[str],
 ) -> list[list[str]]:
-    """A [[sweep]] for every recording."""
+    """A [[sweep]] for every recording; a remark on several is with the first, with their number."""
+    number = Counter(remark for recording in recordings for remark in set(recording.remarks))
+    first = {remark: recording for recording in reversed(recordings) for remark in recording.remarks}
     return [
         [
             "[[sweep]]",
-            *_comments(remark for remark in recording.remarks if remark not in remarks_of_all),
+            *_comments(
+                remark + f" (also {counted(number[remark] - 1, 'file')} below)" * (number[remark] > 1)
+                for remark in recording.remarks
+                if remark not in remarks_of_all and first[remark] is recording
+            ),
             f"file = {quoted(relative(recording.path, folder))}",
             *_content(recording, shared),
         ]

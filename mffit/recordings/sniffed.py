@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from mffit import config as configuration
 from mffit.as_json import keys
@@ -18,7 +19,7 @@ from mffit.errors import InputError
 from mffit.points import levels
 from mffit.points.loading import Reading, read
 from mffit.points.points import Points
-from mffit.points.stretch import MOVE, stretch_table
+from mffit.points.stretch import MOVE, StretchNote, stretch_table
 from mffit.recordings.guess import NOTHING_NAMED
 from mffit.recordings.recording import (
     NOTHING_CHOSEN,
@@ -44,10 +45,10 @@ REVERSIBLE = ("Fz_N", "alpha_deg", "gamma_deg", "Fy_N", "Mz_Nm")
 
 
 class Level(NamedTuple):
-    """One value of a setting, at which there are stretches."""
+    """One value of a setting, at which there are points."""
 
     value: float  #: in SI
-    stretches: int
+    points: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -322,18 +323,19 @@ def stated_of_tyre(sniffed: Sniffed) -> dict[str, StatedByFile]:
 
 
 def conditions_of(recordings: Sequence[SniffedRecording], reading: Reading) -> dict[str, tuple[Level, ...]]:
-    """The levels of every setting, from stretches that give points and from finished points.
+    """The levels of every setting with their points, from stretches that give points and from finished points.
 
     Sideslip has levels only in sweeps of longitudinal slip; pressure and speed only where they are measured.
     """
     kept = [note for note in reading.stretches if note.kind != MOVE and not note.dropped]
     finished = points_from(reading.points, set(reading.points.files) - {note.file for note in kept})
     pressed = holding(recordings, "p_kPa")
+    with_pressure = [note for note in kept if note.file in pressed]
     values = {
-        levels.LOAD: np.append([note.Fz_N for note in kept], finished.Fz),
-        levels.CAMBER: np.append(np.radians([note.gamma_deg for note in kept]), finished.gamma),
-        levels.PRESSURE: np.append(
-            [1e3 * note.p_kPa for note in kept if note.file in pressed], points_from(finished, pressed).p
+        levels.LOAD: _of_points(kept, [note.Fz_N for note in kept], finished.Fz),
+        levels.CAMBER: _of_points(kept, np.radians([note.gamma_deg for note in kept]), finished.gamma),
+        levels.PRESSURE: _of_points(
+            with_pressure, [1e3 * note.p_kPa for note in with_pressure], points_from(finished, pressed).p
         ),
         levels.SPEED: points_from(reading.points, holding(recordings, "V_mps")).V,
     }
@@ -341,8 +343,13 @@ def conditions_of(recordings: Sequence[SniffedRecording], reading: Reading) -> d
     driven = [note for note in kept if note.swept == "kappa"]
     if driven:
         sideslip = np.radians([0.5 * (note.alpha_from_deg + note.alpha_to_deg) for note in driven])
-        found[levels.SIDESLIP.name] = _levels(sideslip, levels.SIDESLIP)
+        found[levels.SIDESLIP.name] = _levels(_of_points(driven, sideslip, ()), levels.SIDESLIP)
     return found
+
+
+def _of_points(notes: Sequence[StretchNote], values: ArrayLike, finished: ArrayLike) -> np.ndarray:
+    """A setting at every point (n,): the value of its stretch, then those of finished points."""
+    return np.append(np.repeat(values, [note.points for note in notes]), finished)
 
 
 def holding(recordings: Sequence[SniffedRecording], channel: str) -> frozenset[str]:

@@ -14,6 +14,7 @@ from mffit.recordings.recording import SniffedRecording
 from mffit.recordings.sniffed import Level, axes_reason
 from mffit.report.text.layout import blocks, paragraphs, table
 from mffit.sweeps.about import names_tyre, title_of
+from tir.errors import counted
 
 SETTINGS = {
     "load": ("N", 1.0, 0),
@@ -92,13 +93,13 @@ def _use(heading: str, recordings: Sequence[SniffedRecording]) -> str:
 def _head(recording: SniffedRecording) -> str:
     if np.isfinite(recording.rate):
         rows = (
-            f"{recording.samples} rows, {recording.rate:.4g} samples per second over {recording.seconds:.0f} s, "
-            f"{recording.gaps} gaps in time"
+            f"{counted(recording.samples, 'row')}, {recording.rate:.4g} samples per second over {recording.seconds:.0f} s, "
+            f"{counted(recording.gaps, 'gap')} in time"
         )
     elif "t_s" in recording.guesses:
-        rows = f"{recording.samples} finished points"
+        rows = f"{counted(recording.samples, 'row')}, each a finished point"
     else:
-        rows = f"{recording.samples} rows without a time channel"
+        rows = counted(recording.samples, "row without a time channel")
     return f"{recording.path}: {recording.kind}, {rows}"
 
 
@@ -120,23 +121,24 @@ def _conditions(sniffed: Sniffed) -> str:
         rows.append(
             (name, unit, ", ".join(_level(level, factor, digits) for level in levels) or "not measured")
         )
-    return table(("setting", "unit", "conditions found (times)"), rows, left=3)
+    return table(("setting", "unit", "conditions found (points)"), rows, left=3)
 
 
 def _level(level: Level, factor: float, digits: int) -> str:
-    return f"{factor * level.value + 0.0:.{digits}f} ({level.stretches})"
+    return f"{factor * level.value + 0.0:.{digits}f} ({level.points})"
 
 
 def _stretches(sniffed: Sniffed) -> str:
     notes = sniffed.reading.stretches
     if not notes:
-        return f"{len(sniffed.points)} finished points"
+        return counted(len(sniffed.points), "point")
     kept = [note for note in notes if note.points]
     lost = [note for note in notes if note.dropped]
-    head = f"{len(kept)} stretches give {len(sniffed.points)} points; {len(lost)} stretches give none"
+    points = counted(len(sniffed.points), "point")
+    head = f"{points} from {counted(len(kept), 'stretch')}; none from {counted(len(lost), 'stretch')}"
     moves = [note for note in lost if note.kind == MOVE]
     if moves:
-        head += f", {len(moves)} of them moves between set-points"
+        head += f", of which {counted(len(moves), 'move')} between set-points"
     other = sorted((note for note in lost if note.kind != MOVE), key=lambda note: note.begin_s)
     rows = [
         (note.sweep, note.kind, f"{note.begin_s:.2f}", f"{note.end_s:.2f}", note.dropped)

@@ -258,7 +258,7 @@ def test_files_with_the_same_columns_share_a_table(german_disc):
     sniffed, _, _ = german_disc
     said = sniff_summary(sniffed)
     assert said.count("Schraeglaufwinkel") == 2
-    assert said.count("finished points") == 5
+    assert said.count("rows, each a finished point") == 5
     (loads,) = (line for line in said.splitlines() if line.startswith("load"))
     assert loads.split()[2::2] == ["900", "1400", "2100"]
 

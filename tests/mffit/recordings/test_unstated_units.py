@@ -286,7 +286,7 @@ def test_only_measured_pressures_count(tmp_path):
     for name, more in (("a", {}), ("b", {}), ("c", {"P": 83.0})):
         (tmp_path / f"{name}.csv").write_text(table(**more))
     found = sniff([f"{tmp_path}/*.csv"])
-    assert [(round(level.value), level.stretches) for level in found.conditions["pressure"]] == [(83_000, 18)]
+    assert [(round(level.value), level.points) for level in found.conditions["pressure"]] == [(83_000, 18)]
     assert "nominal_pressure = 83 " in project_text(
         found, tmp_path, Stated(unloaded_radius=0.2, nominal_load=1500.0)
     )
@@ -299,7 +299,21 @@ def test_rows_without_time_are_reported_as_points(tmp_path):
         text.sniff_summary(found).replace("\n  ", " "),
         project_text(found, tmp_path),
     ):
-        assert "no time: each of 18 rows is treated as a finished point" in said
+        assert "no time: each row is treated as a finished point" in said
+
+
+def test_a_remark_on_some_of_the_recordings_is_written_once_with_their_number(tmp_path):
+    for name, own in (("a", {}), ("b", {"ET": 90.0 * np.arange(18)}), ("c", {}), ("d", {})):
+        (tmp_path / f"{name}.csv").write_text(table(**own))
+    written = project_text(sniff(sorted(tmp_path.glob("*.csv"))), tmp_path)
+    (remark,) = (line for line in written.splitlines() if "no time" in line)
+    assert remark.endswith(" (also 2 files below)")
+
+
+def test_a_time_elapsed_and_a_pressure_of_inflation_are_known_by_these_words_alone(tmp_path):
+    (tmp_path / "a.csv").write_text(table(Elapsed=90.0 * np.arange(18), Inflation=83.0))
+    found = sniff([tmp_path / "a.csv"]).recordings[0].guesses
+    assert (found["t_s"].heading, found["p_kPa"].heading) == ("Elapsed", "Inflation")
 
 
 @pytest.mark.parametrize(
@@ -385,7 +399,7 @@ type = "flat-track"  # a straight path; for a disc, give path_centre and path_ra
 axes = "sae"  # from the negative load
 
 [columns]  # of all files
-# no time: each of 18 rows is treated as a finished point; if they are samples of a recording, name its time under \
+# no time: each row is treated as a finished point; if rows are samples of a recording, name its time under \
 [columns], for example time_s = "..."
 alpha_deg = { column = "SA", unit = "deg" }  # the file states no unit: -8 to 8 look like deg; SA, IA share a unit
 gamma_deg = { column = "IA", unit = "deg" }  # the file states no unit: 2 to 2 look like deg; SA, IA share a unit
@@ -432,7 +446,7 @@ def test_the_project_file_of_two_different_recordings(tmp_path):
 def test_the_conditions_of_two_different_recordings_are_counted(tmp_path):
     found = sniff(two_recordings(tmp_path)).conditions
     rounded = {
-        name: [(round(level.value, 2), level.stretches) for level in levels] for name, levels in found.items()
+        name: [(round(level.value, 2), level.points) for level in levels] for name, levels in found.items()
     }
     assert rounded == {
         "load": [(1000.0, 18), (2000.0, 18)],
