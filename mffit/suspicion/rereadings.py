@@ -296,8 +296,10 @@ def explanation(points: Points, errors: Errors, simulation: Simulation, signs: S
     before = _chi2(errors, {name: one.error for name, one in errors.items()})
     best, said = (1.0 - EXPLAINED_SHARE) * before, ""
     for mistake in MISTAKES:
-        gained = before - _chi2(errors, moved(points, errors, simulation, mistake.undone(points, signs)))
-        if gained > best:
+        undone = mistake.undone(points, signs)
+        left = moved(points, errors, simulation, undone)
+        gained = before - _chi2(errors, left)
+        if gained > best and (mistake.units is None or _agrees_in_size(points, undone, left)):
             best, said = gained, mistake.looks
     for shift in SHIFTS:
         gained, size, u = _fitted(points, errors, shift.shape(points, simulation, errors))
@@ -306,6 +308,18 @@ def explanation(points: Points, errors: Errors, simulation: Simulation, signs: S
             value = shift.start + shift.unit * signs.get(shift.sign, 1.0) * size
             said = shift.looks.format(to_uncertainty(value, shift.unit * u, "" if shift.start else "+"))
     return said
+
+
+def _agrees_in_size(points: Points, undone: Points, left: Mapping[str, np.ndarray]) -> bool:
+    """Whether what is left is small against the readings in the other unit: any are near a model near zero once they are divided
+    by 1000.
+    """
+    there = {name: undone.channel(name) for name in left}
+    changed = [name for name in left if not np.array_equal(there[name], points.channel(name), equal_nan=True)]
+    return all(
+        np.linalg.norm(left[name]) <= EXPLAINED_SHARE * np.linalg.norm(there[name][np.isfinite(there[name])])
+        for name in changed
+    )
 
 
 def _fitted(points: Points, errors: Errors, shapes: Mapping[str, np.ndarray]) -> tuple[float, float, float]:

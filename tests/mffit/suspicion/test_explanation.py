@@ -101,6 +101,12 @@ def test_a_known_mistake_is_named_where_it_explains_more_than_one_number(simulat
     )
 
 
+def test_another_unit_is_named_only_if_the_readings_in_it_agree_in_size(simulation, sweep):
+    """A model that other wrong sweeps drew towards zero is near any moment over 1000."""
+    out = simulation.readings(sweep)
+    assert said(simulation, sweep, out.Fy, -2.5 * out.Mz) == "its moment reversed"
+
+
 def test_two_thirds_of_the_error_must_be_explained(simulation, sweep):
     """An offset, beside an error that alternates from point to point and is like nothing known."""
     out = simulation.readings(sweep)
