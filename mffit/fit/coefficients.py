@@ -22,7 +22,9 @@ class Coefficient:
     """One coefficient of the written file and the origin of its value."""
 
     value: float
-    stderr: float | None  #: standard uncertainty; None if held
+    stderr: (
+        float | None
+    )  #: standard uncertainty, of a directly measured one that of the measurement before the fit; None if held
     stage: str
     fixed: bool
     at_bound: bool
@@ -54,7 +56,10 @@ def coefficient_records(
 
     ``fitted_after`` has the coefficients that were determined after the main fit.
     """
-    stderr = {name: fitted.stderr[name] for name in fitted.values} | {n: q.u for n, q in fitted_after.items()}
+    stderr = {name: u for name, u in known.u.items() if u and known.origin[name] == "measured"}
+    stderr |= {name: fitted.stderr[name] for name in fitted.values} | {
+        n: q.u for n, q in fitted_after.items()
+    }
     out, hand = {}, known.hand
     for row in TABLE:
         if row.kind != "number":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -40,12 +40,15 @@ class Known:
     values: Mapping[str, Any]
     origin: Mapping[str, str]
     hand: Hand = NO_HAND
+    u: Mapping[str, float | None] = field(
+        default_factory=dict
+    )  #: standard uncertainty of measured values, if known
 
     def having(self, found: Mapping[str, Any], origin: str = "") -> Known:
         """The record with some values and their ``origin`` replaced; held values stay, and "" keeps the old origin."""
         replaced = {name: value for name, value in found.items() if name not in self.hand.held}
         words = dict.fromkeys(replaced, origin) if origin else {}
-        return Known({**self.values, **replaced}, {**self.origin, **words}, self.hand)
+        return replace(self, values={**self.values, **replaced}, origin={**self.origin, **words})
 
 
 def known_before_fit(
@@ -87,7 +90,11 @@ def known_before_fit(
         )
         known = known.having(found, "measured")
     if measured.carried is not None:
-        known = known.having({"PECP1": measured.pecp1, "PECP2": measured.pecp2}, "measured")
+        known = known.having({"PECP1": measured.pecp1}, "measured")
+        known = known.having({"PECP2": measured.pecp2}, "measured" if measured.pecp2 else "default")
+        known = replace(
+            known, u={"PECP1": measured.carried.pecp1.u, "PECP2": measured.carried.over_load.u_pecp2}
+        )
     if config.tyre.side == "symmetric":
         known = known.having(dict.fromkeys(ODD_TERMS, 0.0), "given")
     return _as_set(known)

@@ -173,6 +173,10 @@ def test_a_moment_offset_does_not_change_the_factor(tmp_path):
 def test_where_pecp1_comes_from(small, tmp_path):
     result, _ = small
     assert result.tyre["PECP1"] == result.measured.epsilon_gamma.value == result.measured.pecp1
+    held = result.fit.coefficients
+    assert held["PECP1"].status == "measured"
+    assert held["PECP1"].stderr == pytest.approx(result.measured.epsilon_gamma.u, rel=0.1)  # before the fit
+    assert (held["PECP2"].status == "measured") == bool(result.measured.pecp2)
     assert result.measured.epsilon_gamma_model != result.measured.epsilon_gamma.value
     stated = f"PECP1 = {result.tyre['PECP1']:.4f} is eps_gamma as measured."
     assert sum(stated in sentence for sentence in result.fit.explanations) == 1
