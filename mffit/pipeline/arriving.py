@@ -10,7 +10,7 @@ from mffit.config import Config, SweepTable
 from mffit.errors import InputError
 from mffit.pipeline.intake import entry_of, unlisted
 from mffit.points.loading import read
-from mffit.recordings.constants import LOOKS_OF_PATIENCE
+from mffit.recordings.constants import LOOKS_BEFORE_REFUSAL, LOOKS_OF_PATIENCE
 from mffit.recordings.project_file import relative
 from mffit.sheets import file_of
 
@@ -76,7 +76,7 @@ class ArrivingFiles:
             read(config.model_copy(update={"sweep": (entry,)}), may_be_empty=True)
         except InputError as error:
             entry = entry or SweepTable(file=relative(path, config.folder))
-            return Arrived(signature, entry, str(error)) if is_final else None
+            return Arrived(signature, entry, str(error)) if looks >= LOOKS_BEFORE_REFUSAL else None
         return Arrived(signature, entry)
 
 

@@ -94,17 +94,15 @@ class _Watch:
         rewritten = {path: before[path] for path in waiting if path in before}  # no news until complete
         if (config, rewritten | files) == self._shown:
             return None
-        self._shown = config, files
-        self._last = self._campaign()
+        self._shown, self._last = (config, files), self._campaign()
         return self._last
 
     def _campaign(self) -> WatchedCampaign:
         """The results of the complete files."""
-        files, listed = self.arriving.files.values(), {entry.file for entry in self.config.sweep}
-        sound = tuple(file.entry for file in files if not file.problem)
+        files, listed = self.arriving.files.values(), [entry.file for entry in self.config.sweep]
         doubted = {name for name, (is_refused, *_) in self._states.items() if is_refused}
-        usable = read_usable(self.config.model_copy(update={"sweep": sound}), listed, doubted)
-        config, reading, problem = usable.config, usable.reading, usable.problem
+        complete = self.config.model_copy(update={"sweep": tuple(f.entry for f in files if not f.problem)})
+        config, reading, unusable, problem = read_usable(complete, listed, doubted)
         measured = alignment = planned = None
         try:
             with threadpool_limits(1):  # the matrices are small: threads cost more than they save
@@ -117,14 +115,13 @@ class _Watch:
         given = measured.warnings if measured else reading.warnings if reading else ()
         warnings = {NUMBER.sub("0", sentence): sentence for sentence in given}
         said, self._said = self._said, set(warnings)
-        refused = {file.entry.file: file.problem for file in files if file.problem} | usable.refused
+        refused = {file.entry.file: file.problem for file in files if file.problem} | unusable
         awaited = [relative(path, self.config.folder) for path in self.arriving.waiting]
         changed = tuple(self._changed(reading, refused, awaited))
-        missing = [entry.file for entry in self.config.sweep if entry.file not in self._states]
         return WatchedCampaign(
             changed=changed,
             taken=tuple(entry.file for entry in config.sweep),
-            awaited=tuple(dict.fromkeys([*missing, *awaited])),
+            awaited=tuple(dict.fromkeys([*(n for n in listed if n not in self._states), *awaited])),
             refused=tuple(name for name in refused if name in listed),
             points=0 if reading is None else len(reading.points),
             measured=measured,
@@ -148,7 +145,6 @@ class _Watch:
             self._states[name] = bool(why), own, NUMBER.sub("0", why), file.signature
             if self._states[name] != before.get(name):
                 text = "" if why or name in listed else sweep_text(file.entry)
-                if why and name not in listed:
-                    why += OF_ANOTHER
+                why += OF_ANOTHER * (why != "" and name not in listed)
                 yield Arrival(name, "refused" if why else "taken", own, why, text)
         yield from (Arrival(name, "gone") for name in before if name not in {*self._states, *awaited})

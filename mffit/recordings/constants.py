@@ -43,6 +43,11 @@ LOOK_AT_RECORDINGS = Real(
 LOOKS_OF_PATIENCE = Count(
     20,
     "-",
-    "Looks at a folder for which a file that ends within a line or cannot be read is "
-    "taken for one that is still being written: programs at a rig write their buffers every few seconds.",
+    "Looks at a folder for which a file that ends within a line is taken for one that is still being written: programs at a rig "
+    "write their buffers every few seconds.",
+)
+LOOKS_BEFORE_REFUSAL = Count(
+    4,
+    "-",
+    "Looks for which a file that cannot be read must not change until it is refused; it is read again when it does.",
 )

@@ -19,7 +19,7 @@ from disc_project import ZEROS, disc_project, rows
 import mffit
 from mffit.cli import main
 from mffit.errors import InputError
-from mffit.recordings.constants import LOOKS_OF_PATIENCE
+from mffit.recordings.constants import LOOK_AT_RECORDINGS, LOOKS_OF_PATIENCE
 from mffit.report.text import campaign_text
 
 LONG = int(LOOKS_OF_PATIENCE) + 2
@@ -146,9 +146,8 @@ def test_a_bad_file_is_said_once_and_taken_when_it_is_corrected(rig):
     broken = contents[bad.name].replace(b"250.0", b"x", 1)
     for name in good:
         put(path.parent / name, contents[name])
-    found = played(
-        path, [lambda: put(bad, broken), *[None] * LONG, lambda: put(bad, contents[bad.name]), None]
-    )
+    within = [None] * int(3.0 / LOOK_AT_RECORDINGS - 1)  # looks of three seconds
+    found = played(path, [lambda: put(bad, broken), *within, lambda: put(bad, contents[bad.name]), None])
     first, refused, last = found
     assert set(first.taken) == set(refused.taken) == good
     (arrival,) = refused.changed
