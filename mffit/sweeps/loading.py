@@ -173,6 +173,9 @@ def _raw(config: Config, index: int, entry: SweepTable) -> RawTable:
         for name in columns:
             if name not in BY_NAME:
                 raise config.refusal(unknown_channel(name), f"{table}.{name}")
+    if entry.file and (config.folder / entry.file).is_dir():
+        wrong = f'"{entry.file}" is a folder; name a file in it, or a pattern such as "{entry.file}/*.csv"'
+        raise config.refusal(wrong, f"sweep.{index}.file")
     if not file_of(entry.file).name.lower().endswith(ENDINGS):
         *names, last = (kind.name for kind in FORMATS)
         raise config.refusal(

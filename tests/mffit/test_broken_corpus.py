@@ -212,7 +212,7 @@ CORPUS: dict[str, tuple[Change, str]] = {
     "no radius of the path": (toml("path_radius = 1.323\n", ""), "is missing for a rotating disc"),
     "a file listed twice": (toml(CAMBER, "camber_1000.csv"), '"camber_1000.csv" is listed twice'),
     "a file without a name": (toml(CAMBER, ""), 'sweep[6].file: "" is not in a known format'),
-    "a folder for a file": (toml(CAMBER, "."), 'sweep[6].file: "." is not in a known format'),
+    "a folder for a file": (toml(CAMBER, "."), 'sweep[6].file: "." is a folder; name a file in it'),
     "a pattern that fits nothing": (toml(CAMBER, "none/*.csv"), 'matches "none/*.csv"; correct the pattern'),
     "an unknown direction": (of_sweep(direction="astern"), "is not allowed; write 'forward' or 'backward'"),
     "an unknown unit": (
