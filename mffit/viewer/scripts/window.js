@@ -146,7 +146,10 @@ function setLive(state) {
   live = state;
   showSettings();
   if (!live.can_undo) dropMoves(one => !one.trial);  // another program has changed the file since
-  if (live.fits !== shownFit && (live.fits > 0 || live.has_readings)) return bring();
+  if (live.fits !== shownFit && (live.fits > 0 || live.has_readings)) {
+    showStatus();
+    return bring();
+  }
   if (project) {
     project.hand = live.hand;
     project.exclude = live.exclude;
@@ -197,6 +200,7 @@ function showStatus() {
   if (live.problem) return say(live.problem, true);
   if (live.run) return say(
     `${live.fits || live.run.kind !== "fit" ? WORDS[live.run.kind] : "First fit"}: ${live.run.sentence}`);
+  if (live.fits && live.fits !== shownFit) return say("The fit has ended; its curves are being loaded.");
   if (live.last && live.last.sentence) return say(`${live.last.state}: ${live.last.sentence}`, true);
   if (live.last && live.last.state === "stopped") return say("Stopped; nothing was written.");
   say(live.is_fitted ? "The curves are those of mffit build for this tyre.toml."
