@@ -59,11 +59,11 @@ def means(
     kept, sizes = [], []
     for stretch in stretches:
         rows = stretch.begin + np.flatnonzero(~faulty[stretch.begin : stretch.end])
-        first, usual = (
+        first, fewest = (
             (np.zeros(1, dtype=int), 0.0) if stretch.kind == PLATEAU else _blocks(sweep, rows, radius)
         )
         counts = np.diff(np.r_[first, len(rows)])
-        enough = 2 * counts >= usual  # at least half of a block's samples are sound
+        enough = counts >= fewest
         kept.append(rows[np.repeat(enough, counts)])
         sizes.append(counts[enough])
     counts = [len(one) for one in sizes]
@@ -107,26 +107,30 @@ def _errors(
 
 
 def _blocks(sweep: Sweep, rows: np.ndarray, radius: float) -> tuple[np.ndarray, float]:
-    """First row of every block to average, and the usual number of samples in a block.
+    """First row of every block to average, and the fewest sound samples of a block that gives a point.
 
-    A wheel that is not round makes a ripple, which a mean over whole turns does not contain.
+    A wheel that is not round makes a ripple, which a mean over whole turns does not contain: such a block may lack one sample
+    only, another one half of its samples.
     """
     time = sweep.time[rows]
-    interval = float(np.median(np.diff(time))) if len(rows) > 1 else constants.AVERAGED_TIME
+    every = time if len(rows) > 1 else sweep.time
+    interval = float(np.median(np.diff(every))) if len(every) > 1 else constants.AVERAGED_TIME
     step = float(constants.AVERAGED_TIME)
     apart = max(1, round(step / interval))  # samples; readings are too noisy for differences of neighbours
+    seconds = time[apart:] - time[:-apart]
     for name, most in AVERAGED_RANGE.items():
         values = getattr(sweep, name)[rows]
-        change = np.abs(values[apart:] - values[:-apart]) / apart
-        moved = float(np.median(change)) / interval if len(change) else 0.0
+        rates = np.abs(values[apart:] - values[:-apart]) / seconds
+        moved = float(np.median(rates)) if len(rates) else 0.0
         if moved > 0.0:
             step = min(step, most / moved)
     size = float(max(1, round(step / interval)))
-    turn = _turn(sweep, rows, radius)
+    fewest, turn = 0.5 * size, _turn(sweep, rows, radius)
     if constants.RANGE_OF_A_TURN * step > turn:  # False without a turn
         size = max(1, round(step / turn)) * turn / interval
+        fewest = size - 1.0
     block = np.floor((time - time[0]) / (size * interval) + 1e-6)
-    return np.r_[0, np.flatnonzero(np.diff(block)) + 1], size
+    return np.r_[0, np.flatnonzero(np.diff(block)) + 1], fewest
 
 
 def _turn(sweep: Sweep, rows: np.ndarray, radius: float) -> float:

@@ -70,12 +70,16 @@ def conditions(points: Points) -> list[np.ndarray]:
 
 
 def without(config: configuration.Config, points: Points, rows: np.ndarray) -> configuration.Config:
-    """The project without the lines of some points."""
+    """The project without the lines of some points, and without those around them that no other point has."""
     entries = list(config.fit.exclude)
     for k in np.unique(points.file[rows]):
-        lines = np.unique(points.line[rows & (points.file == k)])
-        parts = np.split(lines, np.flatnonzero(np.diff(lines) > 1) + 1)
-        text = ", ".join(f"{part[0]}-{part[-1]}" for part in parts)
+        own = np.flatnonzero(points.file == k)
+        own = own[np.argsort(points.line[own])]
+        parts = np.split(own, np.flatnonzero(np.diff(rows[own])) + 1)
+        first = [points.line[own[0]], *(points.last_line[part[-1]] + 1 for part in parts[:-1])]
+        last = [*(points.line[part[0]] - 1 for part in parts[1:]), points.last_line[own[-1]]]
+        some = [(a, b) for part, a, b in zip(parts, first, last, strict=True) if rows[part[0]]]
+        text = ", ".join(f"{a}-{b}" for a, b in some)
         entries.append(ExcludeTable(file=points.files[k], lines=text, why="left out by the study"))
     return config.model_copy(update={"fit": config.fit.model_copy(update={"exclude": tuple(entries)})})
 

@@ -20,6 +20,7 @@ from flat_belt import (
 
 from mffit import config as configuration
 from mffit import points
+from mffit.config.models import FitTable
 from mffit.errors import InputError
 from mffit.points.stretch import SWEEP
 
@@ -96,6 +97,20 @@ def test_a_wheel_that_is_not_round_leaves_no_ripple_in_the_points(configured, pl
         assert len(found) == pytest.approx(len(plain.points), rel=0.03)
         smooth = longitudinal_force(found.kappa, found.alpha, found.Fz)
         assert np.std(found.Fx - smooth) < 8.0
+
+
+def test_no_point_is_a_mean_over_a_part_of_a_turn(configured, plain):
+    """Behind the last whole turn of a sweep, and where its points are left out by hand, fewer samples remain than a turn has."""
+    found, config = plain.points, configured(drive_recording())
+    samples = found.last_line - found.line + 1
+    assert samples.min() >= samples.max() - 2
+    for sweep in (0, 3, 7):  # the first begins with the recording
+        gone = found.sweep == sweep
+        lines = f"{found.line[gone].min()}-{found.last_line[gone].max()}"
+        out = FitTable(exclude=({"file": config.sweep[0].file, "lines": lines, "why": "x"},))
+        left = points.read(config.model_copy(update={"fit": out})).points
+        np.testing.assert_array_equal(left.line, found.line[~gone])
+        np.testing.assert_allclose(left.Fx, found.Fx[~gone])
 
 
 def test_the_points_of_a_fast_sweep_lie_on_the_curve(configured):

@@ -91,12 +91,24 @@ def test_slip_from_speeds_is_zero_where_the_force_is(read):
 
 
 def test_a_fast_sweep_is_averaged_over_no_more_of_slip_than_of_sideslip():
-    """At a slip of 0.35 per second a tenth of a second would be 0.035; at 0.05 per second it is a turn of the wheel, if known."""
-    for rate, radius, samples in ((0.35, 0.225, 2.0), (0.05, 0.225, 12.85), (0.05, np.nan, 10.0)):
+    """At a slip of 0.35 per second a tenth of a second would be 0.035; at 0.05 per second it is a turn of the wheel, if known.
+
+    A turn may lack one sample, another mean a half.
+    """
+    for rate, radius, samples, fewest in (
+        (0.35, 0.225, 2, 1.0),
+        (0.05, 0.225, 13, 11.85),
+        (0.05, np.nan, 10, 5.0),
+    ):
         time = np.arange(200) / 100.0
         settings = {"alpha": 0.0 * time, "gamma": 0.0 * time, "kappa": rate * time}
         some = SimpleNamespace(time=time, omega=np.nan * time, V=np.full(200, 11.0), **settings)
-        assert _blocks(some, np.arange(200), radius)[1] == pytest.approx(samples, abs=0.01)
+        first, least = _blocks(some, np.arange(200), radius)
+        assert first[1] == samples
+        assert least == pytest.approx(fewest, abs=0.01)
+        # one sample, and the samples to both sides of others that are left out
+        for rows in (np.array([7]), np.r_[0:8, 150:158]):
+            assert _blocks(some, rows, radius)[1] == pytest.approx(fewest, abs=0.01) or rate > 0.3
 
 
 def test_signs_and_units_of_the_channels_are_those_of_iso_w(read):
