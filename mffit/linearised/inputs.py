@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mffit.constants import LEAST_SHARE_OF_A_SENSE
 from mffit.linearised import constants
 from mffit.points import Points, levels
 from mffit.points.constants import CORE
@@ -25,6 +26,7 @@ COLUMNS: Mapping[str, str] = {column.partition("_")[0]: column for column in CON
 OTHER_WORDS: Mapping[str, str] = {
     "phi_t": "path curvature",
     "mount": "mount of the tyre or direction of rolling",
+    "sense": "sense of the sweeps of slip",
 }
 ALSO: tuple[str, ...] = ("phi_t", "T", "mount")
 """Further conditions, each used only if it varies."""
@@ -36,7 +38,7 @@ REVERSED: frozenset[str] = frozenset({"alpha", "gamma", "phi_t"})
 class Input:
     """One condition, in SI units."""
 
-    name: str  #: field of :class:`mffit.points.Points`
+    name: str  #: field of :class:`mffit.points.Points`, or ``sense``
     lower: float  #: lower end of the tested range
     upper: float  #: upper end of the tested range
     spacing: float  #: distance of neighbouring settings, the shortest length scale
@@ -106,6 +108,8 @@ def inputs_of(points: Points) -> tuple[Input, ...]:
             found.append(_input(name, values, int(constants.DIVISIONS_OF_WARMING), usual))
         else:
             found.append(_input(name, values, 1))
+    if np.any(sense_of_slip(points, found)):
+        found.append(Input("sense", -1.0, 1.0, 1.0, (-1.0, 1.0)))
     if mirrored:
         found = [_mirrored(one) if one.name in REVERSED else one for one in found if one.name != "phi_t"]
         end = float(np.max(np.abs(points.phi_t)))
@@ -135,7 +139,7 @@ def _width(values: np.ndarray) -> float:
     return float(high - low)
 
 
-def swept_of(points: Points, inputs: tuple[Input, ...]) -> dict[int, str]:
+def swept_of(points: Points, inputs: Sequence[Input]) -> dict[int, str]:
     """By index of a sweep, the condition that it moves most, relative to the tested range."""
     out = {}
     steered = [one for one in inputs if one.name in LEVELS and one.name != "p"]
@@ -146,11 +150,29 @@ def swept_of(points: Points, inputs: tuple[Input, ...]) -> dict[int, str]:
     return out
 
 
+def sense_of_slip(points: Points, inputs: Sequence[Input]) -> np.ndarray:
+    """Sense (n,) of sweeps of longitudinal slip that go there and back: 1 where the slip rises, -1 where it falls; else 0.
+
+    Nothing else describes their hysteresis, which a model error over the temperature would imitate within each sweep. That of
+    an angle is a term of the fit.
+    """
+    out = np.zeros(len(points))
+    for k, name in swept_of(points, inputs).items():
+        rows = np.flatnonzero(points.sweep == k)
+        if name == "kappa" and len(rows) > 2:
+            way = np.sign(np.gradient(points.kappa[rows]))
+            out[rows] = way * (abs(np.mean(way)) < 1.0 - 2.0 * LEAST_SHARE_OF_A_SENSE)
+    return out
+
+
 def settings_of(points: Points, inputs: tuple[Input, ...]) -> np.ndarray:
     """The conditions (n, d); a condition that a run holds is replaced by the run's mean, which removes control errors."""
     points = forwards(points)
     out = np.empty((len(points), len(inputs)))
     for i, one in enumerate(inputs):
+        if one.name == "sense":
+            out[:, i] = sense_of_slip(points, inputs)
+            continue
         out[:, i] = getattr(points, one.name)
         if one.name != "T":
             for rows in _runs(points):

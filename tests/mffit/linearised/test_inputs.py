@@ -67,6 +67,18 @@ def test_a_prediction_averages_over_the_temperatures_of_a_test():
     assert warm.averaged == pytest.approx((42.0, 50.0, 58.0))
 
 
+def test_slip_that_goes_there_and_back_has_a_sense_whatever_the_temperature():
+    """Nothing but the model error describes the hysteresis of slip, also where a belt gives finished points."""
+    there = np.tile(np.r_[np.linspace(-0.1, 0.1, 11), np.linspace(0.1, -0.1, 11)[1:]], 6)
+    driven = programme(kappa=there, T=np.linspace(40.0, 60.0, 126)).replace(alpha=np.zeros(126))
+    inputs = inputs_of(driven)
+    assert [one.name for one in inputs[-2:]] == ["T", "sense"]
+    assert inputs[-1].averaged == (-1.0, 1.0)
+    senses = settings_of(driven, inputs)[:, -1].reshape(6, 21)
+    assert np.all(senses[:, :10] == 1.0)
+    assert np.all(senses[:, 11:] == -1.0)
+
+
 def test_a_temperature_that_was_measured_in_part_is_no_input():
     T = np.linspace(40.0, 60.0, 126)
     T[3] = np.nan

@@ -149,3 +149,36 @@ def test_a_run_at_a_load_of_its_own_may_miss_otherwise_than_the_others(at_larges
     found = channel.by_others(np.flatnonzero(np.isin(channel.rows, rows)))
     assert found.error @ np.linalg.solve(found.covariance, found.error) / EACH < 2.5
     assert np.sqrt(np.mean(np.diag(found.covariance))) > MISSED
+
+
+def test_the_hysteresis_of_slip_is_not_taken_for_an_effect_of_temperature():
+    """Each run warms by 4 K on its way there and back, and begins at a temperature of its own."""
+    random = np.random.default_rng(3)
+    way = np.r_[np.linspace(-0.12, 0.12, 12), np.linspace(0.12, -0.12, 12)]
+    n = len(way) * RUNS
+    T = (
+        50.0
+        + np.repeat(12.0 * random.random(RUNS), len(way))
+        + np.tile(np.linspace(0.0, 4.0, len(way)), RUNS)
+    )
+    points = make_points(
+        np.zeros(n),
+        0.0,
+        np.repeat(np.tile([800.0, 1200.0, 1600.0, 2200.0], 6), len(way)),
+        kappa=np.tile(way, RUNS),
+        T=T,
+        phi_t=0.0,
+        p=250e3,
+        V=10.0,
+        sweep=np.repeat(np.arange(RUNS), len(way)),
+        sweep_names=[f"r{k}" for k in range(RUNS)],
+    )
+    half = np.tile(np.repeat([1.0, -1.0], 12), RUNS) * 30.0 * np.cos(points.kappa / 0.12)
+    points = points.replace(
+        Fx=simulation().readings(points, ["Fx"])["Fx"] + half + NOISE * random.standard_normal(n)
+    )
+    sigma = {"Fx": np.full(n, NOISE)}
+    found = linearised(points, simulation(), sigma, (Uncertain("PDX1", 0.0, 0.1),)).channels["Fx"]
+    assert next(iter(found.missed_over)) == "sense"
+    assert found.missed_over["T"] < 5.0
+    assert found.missed_at_readings == pytest.approx(half, abs=3.0 * NOISE)
