@@ -48,13 +48,16 @@ class SmoothFunctions(ReadOnlyArrays):
         return cls(inputs, orders[largest])
 
     def columns(self, at: np.ndarray) -> np.ndarray:
-        """Values (n, m) at conditions (n, d), which are clipped to the tested range."""
+        """Values (n, m) at conditions (n, d), which are clipped to the tested range.
+
+        Of a condition that is NaN, and over which predictions average, the mean over its usual values.
+        """
         out = np.ones((len(at), len(self.orders)))
         for i, one in enumerate(self.inputs):
-            inside = np.clip(at[:, i], one.lower, one.upper)
-            place = (inside - one.lower + constants.ROOM * one.width) / _length(one)
             order = np.arange(int(self.orders[:, i].max(initial=0)) + 1)
-            waves = np.cos(np.pi * place[:, None] * order) * np.where(order > 0, np.sqrt(2.0), 1.0)
+            waves = _waves(one, at[:, i], order)
+            if one.averaged:
+                waves[np.isnan(at[:, i])] = _waves(one, np.array(one.averaged), order).mean(axis=0)
             out *= np.take(waves, self.orders[:, i], axis=1)
         return out
 
@@ -77,11 +80,20 @@ class SmoothFunctions(ReadOnlyArrays):
         return likeness, likeness[:, None] * self.columns(settings)
 
     def likeness(self, at: np.ndarray, lengths: np.ndarray) -> np.ndarray:
-        """Correlation (n,) of the model error at conditions (n, d) with that at the nearest tested ones; 1 inside the range."""
+        """Correlation (n,) of the model error at conditions (n, d) with that at the nearest tested ones; 1 inside the range.
+
+        A condition that is NaN counts as tested.
+        """
         lower, upper = ([getattr(one, end) for one in self.inputs] for end in ("lower", "upper"))
-        beyond = (at - np.clip(at, lower, upper)) / lengths
+        beyond = np.nan_to_num(at - np.clip(at, lower, upper)) / lengths
         found: np.ndarray = np.exp(-0.5 * np.sum(beyond**2, axis=1))
         return found
+
+
+def _waves(one: Input, values: np.ndarray, order: np.ndarray) -> np.ndarray:
+    """Cosines (n, k) of one condition, of the numbers of half waves ``order`` (k,), normalised to unit mean square."""
+    place = (np.clip(values, one.lower, one.upper) - one.lower + constants.ROOM * one.width) / _length(one)
+    return np.asarray(np.cos(np.pi * place[:, None] * order) * np.where(order > 0, np.sqrt(2.0), 1.0))
 
 
 def _length(one: Input) -> float:

@@ -72,7 +72,7 @@ class MissedChannel(ReadOnlyArrays):
         return functions @ self.missed, mean + unlike, reading + unlike
 
     def mean(self, settings: np.ndarray) -> np.ndarray:
-        """The model error (n,) alone, as in :meth:`at`."""
+        """The model error (n,) alone, as in :meth:`at`, averaged over conditions that are NaN."""
         return np.asarray(self._functions(settings)[1] @ self.missed)
 
     def u_between(self, settings: np.ndarray, slopes: np.ndarray) -> float:
@@ -255,9 +255,8 @@ class Predictor:
     def missed(self, name: str, points: Points) -> np.ndarray:
         """The estimated model error (n,) of a channel, averaged over conditions that are not stated."""
         channel = self.channels[name]
-        found = [channel.mean(settings) for settings in _settings(points, channel.smooth.inputs)]
         left = self._left(channel, points)
-        return np.asarray(left.load * left.slip * np.mean(found, axis=0))
+        return np.asarray(left.load * left.slip * channel.mean(_stated(points, channel.smooth.inputs)))
 
     def _left(self, channel: MissedChannel, points: Points) -> Remaining:
         """What is left of a channel's model error, by the rule of :class:`tir.correction.Correction`."""
@@ -317,11 +316,16 @@ def _mixed(each: Sequence[PredictedForce]) -> PredictedForce:
 
 def _settings(points: Points, inputs: Sequence[Input]) -> Iterator[np.ndarray]:
     """The conditions (n, d), once for every combination of values of the conditions that are not stated."""
-    unstated = np.full(len(points), np.nan)
-    stated = [getattr(points, one.name, unstated) for one in inputs]
+    stated = _stated(points, inputs)
     for values in itertools.product(*(one.averaged or (np.nan,) for one in inputs)):
-        columns = [np.where(np.isfinite(own), own, value) for own, value in zip(stated, values, strict=True)]
-        yield np.array(columns, dtype=float).reshape(len(inputs), len(points)).T
+        yield np.where(np.isfinite(stated), stated, values)
+
+
+def _stated(points: Points, inputs: Sequence[Input]) -> np.ndarray:
+    """The conditions (n, d), NaN where they are not stated."""
+    unstated = np.full(len(points), np.nan)
+    columns = [getattr(points, one.name, unstated) for one in inputs]
+    return np.array(columns, dtype=float).reshape(len(inputs), len(points)).T
 
 
 def predictor(

@@ -96,3 +96,14 @@ def test_functions_of_mirrored_conditions_have_the_symmetry_of_the_channel(sign)
     assert np.any(
         np.abs(smooth.columns(np.array([[0.0, 2000.0, -0.75]]))) > 0.1
     )  # turn slip alone has a force
+
+
+def test_a_condition_that_is_not_stated_is_averaged_over_its_usual_values():
+    usual = (42.0, 50.0, 59.0)
+    inputs = (Input("alpha", -0.1, 0.1, 0.02), Input("T", 40.0, 60.0, 5.0, averaged=usual))
+    smooth, alpha = SmoothFunctions.over(inputs), np.linspace(-0.1, 0.1, 7)
+    each = [smooth.columns(np.column_stack([alpha, np.full(7, T)])) for T in usual]
+    unstated = np.column_stack([alpha, np.full(7, np.nan)])
+    likeness, functions = smooth.faded(unstated, np.array([0.05, 8.0]))
+    assert np.all(likeness == 1.0)
+    assert functions == pytest.approx(np.mean(each, axis=0), abs=1e-12)
