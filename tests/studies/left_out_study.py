@@ -148,7 +148,7 @@ def least_squares(
 ) -> Simulation:
     """Plain least squares of the numbers of a build; rig errors begin at 0, with the priors of their declaration."""
     free = [n if n.name not in start else replace(n, spread=math.inf) for n in numbers]
-    here = replace(problem, envelope=None, nominal={})
+    here = replace(problem, envelope=None)
     here = here.with_values({n.name: start.get(n.name, n.expected) for n in free})
     for _ in range(PASSES):
         left = {name: np.where(z == 0.0, 0.0, z * here.sigma[name]) for name, z in here.misfit().items()}
