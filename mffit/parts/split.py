@@ -64,9 +64,7 @@ class Parts(ReadOnlyArrays, Brief):
     u_Mz_odd: np.ndarray  #: [Nm]
     paired: np.ndarray  #: "exact" | "interpolated" | "unpaired"
     partner: np.ndarray  #: index of the mirror, -1 if interpolated or unpaired
-    unpaired: tuple[
-        str, ...
-    ]  #: a sentence about the points whose mirror the programme lacks, if there are any
+    unpaired: tuple[str, ...]  #: a sentence about points whose mirror the programme lacks, if there are any
     alpha_odd: np.ndarray  #: sideslip of the odd part [rad]: the reading, corrected for known play
 
     def among(self, points: Points, rows: np.ndarray) -> Parts:

@@ -156,11 +156,8 @@ def _distances(points: Points) -> str:
 
 def _runs(points: Points) -> str:
     count = len(np.unique(points.sweep))
-    return (
-        ""
-        if count >= FEWEST_SWEEPS_TO_PREDICT
-        else f"too few to show how runs differ: {counted(count, 'run')}"
-    )
+    enough = count >= FEWEST_SWEEPS_TO_PREDICT
+    return "" if enough else f"{counted(count, 'run')} cannot show how runs differ"
 
 
 NUISANCES = (

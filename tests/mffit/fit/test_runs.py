@@ -167,7 +167,7 @@ def test_the_key_decides(scattered, given, modelled):
 def test_two_runs_cannot_show_a_scatter(scattered):
     search = scattered[0].fit.search
     few = search.problem.select(np.flatnonzero(search.problem.points.sweep < 2))
-    with pytest.raises(InputError, match="2 runs do not show how runs differ"):
+    with pytest.raises(InputError, match="2 runs cannot show how runs differ"):
         choose(with_keys(scattered[0], run_scale=True), replace(search, problem=few))
 
 
