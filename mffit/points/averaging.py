@@ -59,11 +59,9 @@ def means(
     kept, sizes = [], []
     for stretch in stretches:
         rows = stretch.begin + np.flatnonzero(~faulty[stretch.begin : stretch.end])
-        first, fewest = (
-            (np.zeros(1, dtype=int), 0.0) if stretch.kind == PLATEAU else _blocks(sweep, rows, radius)
-        )
+        plateau = np.zeros(1, dtype=int), np.ones(1, dtype=bool)
+        first, enough = plateau if stretch.kind == PLATEAU else _blocks(sweep, rows, radius)
         counts = np.diff(np.r_[first, len(rows)])
-        enough = counts >= fewest
         kept.append(rows[np.repeat(enough, counts)])
         sizes.append(counts[enough])
     counts = [len(one) for one in sizes]
@@ -106,11 +104,11 @@ def _errors(
     return np.where(np.isfinite(stated), stated, np.where(errors > 0.0, errors, np.nan))
 
 
-def _blocks(sweep: Sweep, rows: np.ndarray, radius: float) -> tuple[np.ndarray, float]:
-    """First row of every block to average, and the fewest sound samples of a block that gives a point.
+def _blocks(sweep: Sweep, rows: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarray]:
+    """First row of every block to average, and the mask of the blocks that give a point: half of their samples are sound.
 
-    A wheel that is not round makes a ripple, which a mean over whole turns does not contain: such a block may lack one sample
-    only, another one half of its samples.
+    A wheel that is not round makes a ripple, which a mean over whole turns does not contain: such a block lacks one sample at
+    most at either end.
     """
     time = sweep.time[rows]
     every = time if len(rows) > 1 else sweep.time
@@ -125,12 +123,14 @@ def _blocks(sweep: Sweep, rows: np.ndarray, radius: float) -> tuple[np.ndarray, 
         if moved > 0.0:
             step = min(step, most / moved)
     size = float(max(1, round(step / interval)))
-    fewest, turn = 0.5 * size, _turn(sweep, rows, radius)
+    shortest, turn = 0.0, _turn(sweep, rows, radius)
     if constants.RANGE_OF_A_TURN * step > turn:  # False without a turn
         size = max(1, round(step / turn)) * turn / interval
-        fewest = size - 1.0
+        shortest = (size - 2.5) * interval
     block = np.floor((time - time[0]) / (size * interval) + 1e-6)
-    return np.r_[0, np.flatnonzero(np.diff(block)) + 1], fewest
+    first = np.r_[0, np.flatnonzero(np.diff(block)) + 1]
+    behind = np.r_[first[1:], len(rows)]
+    return first, (2.0 * (behind - first) >= size) & (time[behind - 1] - time[first] >= shortest)
 
 
 def _turn(sweep: Sweep, rows: np.ndarray, radius: float) -> float:

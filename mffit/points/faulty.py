@@ -202,6 +202,7 @@ FAULTS = (
         id=DRIVEN_RULE,
         looks_at="Longitudinal slip, where Fx was not measured",
         reason=DRIVEN,
+        may_be_short=True,
         find=lambda sweep, _: driven(sweep),
     ),
     FaultRule(

@@ -228,3 +228,11 @@ def test_slip_against_free_rolling_is_said_and_left_alone(plain):
     (sentence,) = [note for note in plain.notes if "SL is against free rolling" in note]
     assert float(sentence.split("within ")[1].split()[0]) < 0.0006
     assert np.allclose(plain.points.kappa, plain.points.table["kappa"])
+
+
+@pytest.mark.parametrize("heading", ["FX", "FY"])
+def test_samples_lost_here_and_there_cost_no_points(configured, plain, heading):
+    table = drive_recording()
+    lost = np.random.default_rng(4).random(len(table)) < 0.05
+    found = points.read(configured(table.assign(**{heading: table[heading].where(~lost)}))).points
+    assert len(found) > 0.95 * len(plain.points)

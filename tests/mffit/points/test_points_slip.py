@@ -90,25 +90,32 @@ def test_slip_from_speeds_is_zero_where_the_force_is(read):
     assert any("zero at Fx = 0" in said for said in (*found.notes, *found.warnings))
 
 
-def test_a_fast_sweep_is_averaged_over_no_more_of_slip_than_of_sideslip():
-    """At a slip of 0.35 per second a tenth of a second would be 0.035; at 0.05 per second it is a turn of the wheel, if known.
+def slipping(rate: float) -> SimpleNamespace:
+    """Two seconds of slip that rises by ``rate`` per second, at 100 samples a second."""
+    time = np.arange(200) / 100.0
+    settings = {"alpha": 0.0 * time, "gamma": 0.0 * time, "kappa": rate * time}
+    return SimpleNamespace(time=time, omega=np.nan * time, V=np.full(200, 11.0), **settings)
 
-    A turn may lack one sample, another mean a half.
-    """
-    for rate, radius, samples, fewest in (
-        (0.35, 0.225, 2, 1.0),
-        (0.05, 0.225, 13, 11.85),
-        (0.05, np.nan, 10, 5.0),
-    ):
-        time = np.arange(200) / 100.0
-        settings = {"alpha": 0.0 * time, "gamma": 0.0 * time, "kappa": rate * time}
-        some = SimpleNamespace(time=time, omega=np.nan * time, V=np.full(200, 11.0), **settings)
-        first, least = _blocks(some, np.arange(200), radius)
+
+def test_a_fast_sweep_is_averaged_over_no_more_of_slip_than_of_sideslip():
+    """At a slip of 0.35 per second a tenth of a second would be 0.035; at 0.05 per second it is a turn of the wheel, if known."""
+    for rate, radius, samples in ((0.35, 0.225, 2), (0.05, 0.225, 13), (0.05, np.nan, 10)):
+        first, gives = _blocks(slipping(rate), np.arange(200), radius)
         assert first[1] == samples
-        assert least == pytest.approx(fewest, abs=0.01)
-        # one sample, and the samples to both sides of others that are left out
-        for rows in (np.array([7]), np.r_[0:8, 150:158]):
-            assert _blocks(some, rows, radius)[1] == pytest.approx(fewest, abs=0.01) or rate > 0.3
+        assert gives[:-1].all()
+
+
+def test_a_mean_may_lack_half_of_its_samples_but_no_end_of_a_turn():
+    def gives(rows, radius):
+        return _blocks(slipping(0.05), np.asarray(rows), radius)[1].tolist()
+
+    assert gives(range(25), 0.225) == [True, True]  # turns of 12.85 samples
+    assert gives(range(24), 0.225) == [True, False]
+    assert gives(np.delete(range(26), [2, 4, 6, 8, 15, 17]), 0.225) == [True, True]
+    assert gives(range(15), np.nan) == [True, True]  # means of ten samples
+    assert gives(range(14), np.nan) == [True, False]
+    for rows in ([7], np.r_[0:8, 150:158]):  # one sample, and both sides of what was left out
+        assert not any(gives(rows, 0.225))
 
 
 def test_signs_and_units_of_the_channels_are_those_of_iso_w(read):
