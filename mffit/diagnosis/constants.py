@@ -37,8 +37,6 @@ NO_NOISE_SHARE = Real(
     "Scatter over the rms reading below which readings come from a simulation; rigs reach 0.001 at best.",
 )
 
-# What a fit leaves
-
 # Scatter as found
 STATED_NOISE_FACTOR = Real(2.0, "-", "Usual factor (1 sigma) between true and stated uncertainties.")
 SURPRISING_LOG_ODDS = Real(

@@ -22,9 +22,8 @@ class Coefficient:
     """One coefficient of the written file and the origin of its value."""
 
     value: float
-    stderr: (
-        float | None
-    )  #: standard uncertainty, of a directly measured one that of the measurement before the fit; None if held
+    stderr: float | None
+    """Standard uncertainty: of the fit, or of the direct measurement if the value comes from it; None if held."""
     stage: str
     fixed: bool
     at_bound: bool

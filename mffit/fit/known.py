@@ -40,9 +40,8 @@ class Known:
     values: Mapping[str, Any]
     origin: Mapping[str, str]
     hand: Hand = NO_HAND
-    u: Mapping[str, float | None] = field(
-        default_factory=dict
-    )  #: standard uncertainty of measured values, if known
+    u: Mapping[str, float | None] = field(default_factory=dict)
+    """Standard uncertainties of measured values, where known."""
 
     def having(self, found: Mapping[str, Any], origin: str = "") -> Known:
         """The record with some values and their ``origin`` replaced; held values stay, and "" keeps the old origin."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mffit.constants import LEAST_SHARE_OF_A_SENSE
 from mffit.linearised import constants
 from mffit.points import Points, levels
+from mffit.points.clock import goes_both_ways
 from mffit.points.constants import CORE
 from mffit.quantities import CONDITIONS, REVERSED_BY_HALF_A_TURN
 
@@ -68,12 +68,9 @@ def forwards(points: Points) -> Points:
 
     In these axes the model error is one function of the conditions, as the forces of :func:`tir.evaluate.either_way` are.
     """
-    turned = points.direction
+    way = points.direction
     return points.replace(
-        gamma=turned * points.gamma,
-        phi_t=turned * points.phi_t,
-        mount=turned * points.mount,
-        direction=np.abs(turned),
+        gamma=way * points.gamma, phi_t=way * points.phi_t, mount=way * points.mount, direction=np.abs(way)
     )
 
 
@@ -161,7 +158,8 @@ def sense_of_slip(points: Points, inputs: Sequence[Input]) -> np.ndarray:
         rows = np.flatnonzero(points.sweep == k)
         if name == "kappa" and len(rows) > 2:
             way = np.sign(np.gradient(points.kappa[rows]))
-            out[rows] = way * (abs(np.mean(way)) < 1.0 - 2.0 * LEAST_SHARE_OF_A_SENSE)
+            if goes_both_ways(way):
+                out[rows] = way
     return out
 
 

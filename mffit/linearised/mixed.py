@@ -66,7 +66,7 @@ class Mixed(ReadOnlyArrays):
 
     @cached_property
     def _rows(self) -> slice | np.ndarray:
-        """Of all groups."""
+        """The rows of all groups."""
         return successive(np.concatenate([np.zeros(0, dtype=int), *self.groups]))
 
     def _sums_of(self, residual: np.ndarray) -> dict[str, Any]:

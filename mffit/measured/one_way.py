@@ -11,10 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.constants import LEAST_SHARE_OF_A_SENSE
 from mffit.measured import constants
 from mffit.points import Points
-from mffit.points.clock import sense
+from mffit.points.clock import goes_both_ways, sense
 
 
 class OneWayLag(NamedTuple):
@@ -28,7 +27,7 @@ def one_way_lag(points: Points, unloaded_radius: float) -> OneWayLag | None:
     """The lag of points whose moving sweeps all go one way; None if some go the other way, or none moves."""
     way = sense(points)
     moving = np.isfinite(points.time) & (way != 0.0)
-    if not np.any(moving) or abs(np.mean(way[moving])) < 1.0 - 2.0 * LEAST_SHARE_OF_A_SENSE:
+    if not np.any(moving) or goes_both_ways(way[moving]):
         return None
     per_metre = np.zeros(len(points))
     for k in np.unique(points.sweep[moving]):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -117,7 +117,7 @@ class _Watch:
         said, self._said = self._said, set(warnings)
         refused = {file.entry.file: file.problem for file in files if file.problem} | unusable
         awaited = [relative(path, self.config.folder) for path in self.arriving.waiting]
-        changed = tuple(self._changed(reading, refused, awaited))
+        changed = tuple(self._changed(reading, listed, refused, awaited))
         return WatchedCampaign(
             changed=changed,
             taken=tuple(entry.file for entry in config.sweep),
@@ -133,18 +133,18 @@ class _Watch:
         )
 
     def _changed(
-        self, reading: Reading | None, refused: Mapping[str, str], awaited: Collection[str]
+        self, reading: Reading | None, listed: list[str], refused: Mapping[str, str], awaited: list[str]
     ) -> Iterator[Arrival]:
         """Changes of files since the previous campaign; other numbers in a sentence do not count."""
         before, self._states = self._states, {}
         files = np.array(reading.points.files)[reading.points.file] if reading else np.array([], str)
-        listed = {entry.file for entry in self.config.sweep}
         for file in self.arriving.files.values():
             name = file.entry.file
             why, own = refused.get(name, ""), int(np.sum(files == name))
             self._states[name] = bool(why), own, NUMBER.sub("0", why), file.signature
             if self._states[name] != before.get(name):
                 text = "" if why or name in listed else sweep_text(file.entry)
-                why += OF_ANOTHER * (why != "" and name not in listed)
+                if why and name not in listed:
+                    why += OF_ANOTHER
                 yield Arrival(name, "refused" if why else "taken", own, why, text)
         yield from (Arrival(name, "gone") for name in before if name not in {*self._states, *awaited})

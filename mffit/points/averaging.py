@@ -56,10 +56,10 @@ def means(
     used = np.zeros(len(sweep), dtype=bool)
     if not stretches:
         return Means(rows_as_points(sweep, phi_t, np.flatnonzero(used)), (), used)
+    plateau = np.zeros(1, dtype=int), np.ones(1, dtype=bool)  # one mean, of however many samples
     kept, sizes = [], []
     for stretch in stretches:
         rows = stretch.begin + np.flatnonzero(~faulty[stretch.begin : stretch.end])
-        plateau = np.zeros(1, dtype=int), np.ones(1, dtype=bool)
         first, enough = plateau if stretch.kind == PLATEAU else _blocks(sweep, rows, radius)
         counts = np.diff(np.r_[first, len(rows)])
         kept.append(rows[np.repeat(enough, counts)])

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mffit.constants import SAME_SIDESLIP
+from mffit.constants import LEAST_SHARE_OF_A_SENSE, SAME_SIDESLIP
 from mffit.points.points import Points
 from mffit.sweeps import Sweep
 
@@ -62,3 +62,8 @@ def sense(points: Points) -> np.ndarray:
             moving = np.gradient(points.alpha[rows])
             out[rows] = np.where(np.abs(moving) > SAME_SIDESLIP.rad, np.sign(moving), 0.0)
     return out
+
+
+def goes_both_ways(way: np.ndarray) -> bool:
+    """Whether both senses, 1 and -1, have their share of the moving points ``way`` (n,)."""
+    return bool(abs(np.mean(way)) < 1.0 - 2.0 * LEAST_SHARE_OF_A_SENSE)
