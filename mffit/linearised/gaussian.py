@@ -67,7 +67,8 @@ class Informed(ReadOnlyArrays):
         while True:
             precision = information.copy()
             precision.flat[:: len(pull) + 1] += 1.0 + rounding
-            factor, failed = dpotrf(precision, lower=1, clean=1) if len(pull) else (precision, 0)
+            # symmetric, and as the library wants it without a copy when transposed
+            factor, failed = dpotrf(precision.T, lower=1, overwrite_a=1) if len(pull) else (precision, 0)
             if not failed:
                 return cls(factor, pull)
             if not np.all(np.isfinite(information)):

@@ -102,10 +102,11 @@ class Mixed(ReadOnlyArrays):
         w, gain = np.exp(-given.noise), found.gain
         own_size = np.exp(given.own)
         alone = np.einsum("gqr,gr->gq", found.own, sums.own_pull)
-        own = w * (alone - found.through @ found.mean)
-        through = found.through.reshape(own.size, len(found.mean))
-        # transposed, the rows lie as the library wants them and need not be turned
-        spread = np.sum(dtrmm(1.0, found.root, through.T, trans_a=1) ** 2, axis=0).reshape(own.shape)
+        half, halfway = found.half, found.halfway
+        own = w * (alone - np.einsum("gqr,gr->gq", half, halfway @ found.mean))
+        # transposed, the rows lie as the library wants them; the product takes their place, as new memory costs more than it
+        dtrmm(1.0, found.root, halfway.reshape(own.size, len(found.mean)).T, trans_a=1, overwrite_b=1)
+        spread = np.sum(half @ (halfway @ np.swapaxes(halfway, 1, 2)) * half, axis=2)
         own_variance = np.diagonal(found.own, axis1=1, axis2=2) + w * w * spread
         square = w * sums.square - found.mean @ found.pull - w * w * np.sum(sums.own_pull * alone)
         scaled = found.scaled
@@ -127,23 +128,24 @@ class Mixed(ReadOnlyArrays):
         size, own_size = np.exp(0.5 * given.common), np.exp(0.5 * given.own)
         inner = np.linalg.cholesky(np.eye(len(own_size)) + w * own_size[:, None] * sums.own * own_size)
         half = np.swapaxes(np.linalg.inv(inner) * own_size, 1, 2)
-        own, halfway = half @ np.swapaxes(half, 1, 2), np.swapaxes(half, 1, 2) @ sums.across
-        through = half @ halfway
-        rows = sums.own_pull.size, len(size)
-        flat = halfway.reshape(rows)
-        square = flat.T @ flat  # a product with its own transpose is half the work
-        information = w * sums.common - w * w * square
-        pull = w * sums.pull - w * w * sums.own_pull.ravel() @ through.reshape(rows)
+        halfway = np.swapaxes(half, 1, 2) @ sums.across
+        flat = halfway.reshape(sums.own_pull.size, len(size))
+        information = flat.T @ flat  # a product with its own transpose is half the work
+        information *= -w * w
+        information += w * sums.common
+        information *= size[:, None] * size
+        pull = w * sums.pull - w * w * np.einsum("gq,gqr->gr", sums.own_pull, half).ravel() @ flat
         rounding = ROUNDING * float(np.max(w * np.diag(sums.common) * size**2, initial=0.0))
-        found = Informed.by(size[:, None] * information * size, size * pull, rounding)
+        found = Informed.by(information, size * pull, rounding)
         return MixedPosterior(
             mean=size * found.mean,
             root=size[:, None] * found.root,
             pull=pull,
             scaled=found.mean,
-            gain=np.sum(found.root**2, axis=1),
-            own=own,
-            through=through,
+            gain=np.einsum("ij,ij->i", found.root, found.root),
+            own=half @ np.swapaxes(half, 1, 2),
+            half=half,
+            halfway=halfway,
             log_determinant=found.log_determinant
             + 2.0 * float(np.sum(np.log(np.diagonal(inner, axis1=1, axis2=2)))),
         )
@@ -182,7 +184,7 @@ class Mixed(ReadOnlyArrays):
         w, z, x = float(np.exp(-noise)), further.own, further.common
         error = further.residual - x @ found.mean - w * z @ found.own[k] @ self._left_to_group(found, k)
         spread = np.einsum("ij,ij->i", z @ found.own[k], z)
-        return error, spread + np.sum(((x - w * z @ found.through[k]) @ found.root) ** 2, axis=1)
+        return error, spread + np.sum(((x - w * z @ found.through(k)) @ found.root) ** 2, axis=1)
 
     def _left_to_group(self, found: MixedPosterior, k: int) -> np.ndarray:
         """Products (q,) of the random effects' columns and what the common numbers leave of a group's residuals."""
@@ -200,7 +202,7 @@ class Mixed(ReadOnlyArrays):
             end = begin + len(out)
             block[begin:end, begin:end] = w * (np.eye(len(out)) - own @ z.T)
             begin = end
-            whitened.append(w * (x - w * z @ found.through[k]))
+            whitened.append(w * (x - w * z @ found.through(k)))
             moved.append(w * (r - x @ found.mean - own @ self._left_to_group(found, k)))
             order.append(out)
         through = np.concatenate(whitened) @ found.root
@@ -232,8 +234,13 @@ class MixedPosterior(NamedTuple):
     scaled: np.ndarray  #: (m,) mean over the prior standard deviation
     gain: np.ndarray  #: (m,) posterior variance over prior variance
     own: np.ndarray  #: (groups, q, q) covariance of the random effects given the common numbers
-    through: np.ndarray  #: (groups, q, m) that covariance times the products of own and common columns
+    half: np.ndarray  #: (groups, q, q) a root of that covariance
+    halfway: np.ndarray  #: (groups, q, m) its transpose times the products of own and common columns
     log_determinant: float
+
+    def through(self, k: int) -> np.ndarray:
+        """Covariance of the random effects of a group times the products (q, m) of its own and common columns."""
+        return np.asarray(self.half[k] @ self.halfway[k])
 
 
 class FurtherColumns(NamedTuple):
