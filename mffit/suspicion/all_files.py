@@ -56,7 +56,7 @@ def reversed_file(points: Points, config: Config) -> Iterator[Facts]:
     files = np.unique(points.file)
     if len(files) < 2:
         return
-    each = [signatures(points.select(points.file == index)) for index in files]
+    each = [signatures(points.select(points.file == index, with_table=False)) for index in files]
     broken = []
     for k, own in enumerate(_with_common_scatter(each)):
         found = next(((sign, facts["column"]) for sign in SIGNS for facts in sign.find(own)), None)

@@ -84,12 +84,12 @@ def rule(**told: Any) -> Callable[[Find], Rule]:
 
 
 def each_file(find: Find) -> Find:
-    """Decorator that turns a finder for the points of one file into a finder for all files."""
+    """Decorator that turns a finder for the points of one file, without their table, into a finder for all files."""
 
     @wraps(find)
     def everywhere(points: Points, config: Config) -> Iterator[Facts]:
         for k in np.unique(points.file):
-            for facts in find(points.select(points.file == k), config):
+            for facts in find(points.select(points.file == k, with_table=False), config):
                 yield {"file": points.files[k], **facts}
 
     return everywhere

@@ -72,8 +72,9 @@ class Signatures(NamedTuple):
 
 def signatures(points: Points) -> Signatures:
     """The signatures of steady points in normal mount at which the wheel rolls freely."""
-    points = points.select(points.free_rolling)
-    points = points.select(points.mount > 0) if np.any(points.mount > 0) else points
+    free = points.free_rolling
+    normal = free & (points.mount > 0)
+    points = points.select(normal if np.any(normal) else free, with_table=False)
     forward = points.direction > 0
     sideslip, camber = np.abs(points.alpha), np.abs(points.gamma)
     upright = (sideslip <= constants.SIDESLIP_OF_SLOPES.rad) & (camber <= UPRIGHT.rad)

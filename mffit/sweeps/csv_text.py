@@ -101,11 +101,12 @@ def _table_of_text(content: bytes, path: Path) -> RawTable:
     filled = np.flatnonzero(table.notna().any(axis=1).to_numpy())
     _check_widths(body, table, filled, len(head.headings))
     table = table.iloc[filled] if len(filled) < len(table) else table
-    kept = [k for k, name in enumerate(names) if head.headings[k] or table[name].notna().any()]
+    columns = dict(table.items())
+    kept = [k for k, name in enumerate(names) if head.headings[k] or columns[name].notna().any()]
     return RawTable(
         headings=tuple(names[k] for k in kept),
         units=tuple(head.units[k] for k in kept),
-        cells=tuple(_cells(table.pop(names[k]), dialect) for k in kept),
+        cells=tuple(_cells(columns[names[k]], dialect) for k in kept),
         lines=filled + above + 1,
         path=path,
         heading_line=heading_line,
