@@ -64,8 +64,8 @@ OF_FILES = {
     "compare": ("compare", "{}", TRUE, "--out", "{}.compared"),
     "convert": ("convert", "{}", "--to", "mf52", "--out", "{}.old.tir"),
     "convert back": ("convert", "{}.old.tir", "--out", "{}.new.tir"),
-    "export c": ("export", "c", "{}", "--out", "{}.c"),
-    "export matlab": ("export", "matlab", "{}", "--out", "{}.m"),
+    "export c": ("export", "c", "{}", "--out", "{}-c"),
+    "export matlab": ("export", "matlab", "{}", "--out", "{}-matlab"),
     "export table": ("export", "table", "{}", "--for", "csv", "--error", "90", "--out", "{}.table"),
 }
 OF_PROJECTS = {
