@@ -54,9 +54,10 @@ def conditions(points: Points, settings: Sequence[tuple[str, levels.LevelKind]])
 def mean_readings(points: Points, rows: np.ndarray, keys: np.ndarray, u: np.ndarray) -> MeanReadings:
     """The mean readings of some ``rows`` (m,) by condition; ``keys`` (n, k) are conditions, ``u`` (n,) uncertainties of Fy."""
     out: dict[tuple[int, ...], MeanReading] = {}
+    readings = np.stack([points.Fy, points.Fz, points.alpha])
     for group in levels.rows_of_equal(keys[rows]):
         own = rows[group]
-        Fy, Fz, alpha = (float(np.mean(getattr(points, name)[own])) for name in ("Fy", "Fz", "alpha"))
+        Fy, Fz, alpha = np.mean(readings[:, own], axis=1).tolist()
         error = float(rms(u[own])) / np.sqrt(len(own))
         out[tuple(keys[own[0]].tolist())] = MeanReading(Fy, Fz, alpha, 0.0, error)
     for key, one in out.items():
