@@ -78,7 +78,7 @@ class Numbers(ReadOnlyArrays, Brief):
 
     def spread_of(self, slopes: np.ndarray, names: Sequence[str]) -> np.ndarray:
         """Standard uncertainty (n,) of quantities with the derivatives ``slopes`` (n, j) by the named numbers."""
-        variance = np.einsum("ni,ij,nj->n", slopes, self.covariance_of(names), slopes)
+        variance = np.sum(slopes @ self.covariance_of(names) * slopes, axis=1)
         return np.asarray(np.sqrt(np.maximum(variance, 0.0)))
 
     def given(self, names: Collection[str]) -> Numbers:

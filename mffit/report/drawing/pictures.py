@@ -47,17 +47,21 @@ class Drawing(NamedTuple):
 
 def draw(sheet: Sheet) -> Drawing:
     """Draw the sheet; the same sheet gives the same bytes."""
-    with _settings():
-        canvas = FigureCanvasAgg(figure_of(sheet))
-        canvas.draw()  # type: ignore[no-untyped-call]
-        pixels = np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[..., :3])  # type: ignore[no-untyped-call]
-    whole = Image.fromarray(pixels).quantize(COLOURS, Image.Quantize.FASTOCTREE)
+    whole = _image(sheet)
     return Drawing(png=_png(whole), markup=_markup(whole, sheet))
 
 
 def save(sheet: Sheet, path: Path) -> None:
     """Draw the sheet as a PNG alone."""
-    path.write_bytes(draw(sheet).png)
+    path.write_bytes(_png(_image(sheet)))
+
+
+def _image(sheet: Sheet) -> Image.Image:
+    with _settings():
+        canvas = FigureCanvasAgg(figure_of(sheet))
+        canvas.draw()  # type: ignore[no-untyped-call]
+        pixels = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")  # type: ignore[no-untyped-call]
+    return pixels.quantize(COLOURS, Image.Quantize.FASTOCTREE)
 
 
 @contextmanager
