@@ -169,7 +169,7 @@ class _Tyres:
         ``with_mean``: including the difference of the population mean from its prior mean.
         """
         rows, mine = self.model.groups[k], self.mine[k]
-        by_common = -found.through(k)[mine]
+        by_common = -found.half[k][mine] @ found.halfway[k]
         alone = found.own[k][mine] @ (self.model.own[rows].T @ self.model.residual[rows])
         if with_mean:
             by_common[range(len(mine)), [len(self.shared) + j for j in mine]] += 1.0

@@ -102,11 +102,11 @@ class Mixed(ReadOnlyArrays):
         w, gain = np.exp(-given.noise), found.gain
         own_size = np.exp(given.own)
         alone = np.einsum("gqr,gr->gq", found.own, sums.own_pull)
-        half, halfway = found.half, found.halfway
-        own = w * (alone - np.einsum("gqr,gr->gq", half, halfway @ found.mean))
-        # transposed, the rows lie as the library wants them; the product takes their place, as new memory costs more than it
-        dtrmm(1.0, found.root, halfway.reshape(own.size, len(found.mean)).T, trans_a=1, overwrite_b=1)
-        spread = np.sum(half @ (halfway @ np.swapaxes(halfway, 1, 2)) * half, axis=2)
+        own = w * (alone - np.einsum("gqr,gr->gq", found.half, found.halfway @ found.mean))
+        rows = found.halfway.reshape(own.size, len(found.mean))
+        # transposed, rows lie as the library wants them; the product takes their place, as new memory costs more than it
+        turned = dtrmm(1.0, found.root, rows.T, trans_a=1, overwrite_b=1).T.reshape(found.halfway.shape)
+        spread = np.sum(found.half @ (turned @ np.swapaxes(turned, 1, 2)) * found.half, axis=2)
         own_variance = np.diagonal(found.own, axis1=1, axis2=2) + w * w * spread
         square = w * sums.square - found.mean @ found.pull - w * w * np.sum(sums.own_pull * alone)
         scaled = found.scaled
@@ -184,7 +184,8 @@ class Mixed(ReadOnlyArrays):
         w, z, x = float(np.exp(-noise)), further.own, further.common
         error = further.residual - x @ found.mean - w * z @ found.own[k] @ self._left_to_group(found, k)
         spread = np.einsum("ij,ij->i", z @ found.own[k], z)
-        return error, spread + np.sum(((x - w * z @ found.through(k)) @ found.root) ** 2, axis=1)
+        through = (x - w * z @ found.half[k] @ found.halfway[k]) @ found.root
+        return error, spread + np.sum(through**2, axis=1)
 
     def _left_to_group(self, found: MixedPosterior, k: int) -> np.ndarray:
         """Products (q,) of the random effects' columns and what the common numbers leave of a group's residuals."""
@@ -202,7 +203,7 @@ class Mixed(ReadOnlyArrays):
             end = begin + len(out)
             block[begin:end, begin:end] = w * (np.eye(len(out)) - own @ z.T)
             begin = end
-            whitened.append(w * (x - w * z @ found.through(k)))
+            whitened.append(w * (x - w * z @ found.half[k] @ found.halfway[k]))
             moved.append(w * (r - x @ found.mean - own @ self._left_to_group(found, k)))
             order.append(out)
         through = np.concatenate(whitened) @ found.root
@@ -237,10 +238,6 @@ class MixedPosterior(NamedTuple):
     half: np.ndarray  #: (groups, q, q) a root of that covariance
     halfway: np.ndarray  #: (groups, q, m) its transpose times the products of own and common columns
     log_determinant: float
-
-    def through(self, k: int) -> np.ndarray:
-        """Covariance of the random effects of a group times the products (q, m) of its own and common columns."""
-        return np.asarray(self.half[k] @ self.halfway[k])
 
 
 class FurtherColumns(NamedTuple):

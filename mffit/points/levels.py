@@ -174,7 +174,9 @@ def _centres(scaled: np.ndarray) -> np.ndarray:
     while len(left.values):
         place = left.values[np.argmax(_within(left.values, left, 0.5))]
         about = left.part(np.abs(left.values - place) <= 0.5)
-        place = about.median
+        ends = np.cumsum(about.counts)
+        middle = np.searchsorted(ends, [(ends[-1] - 1) // 2, ends[-1] // 2], side="right")
+        place = float(np.sum(about.values[middle])) / 2.0
         if not _is_flank(place, known, density):
             places.append(place)
             sizes.append(int(about.counts.sum()))
@@ -192,12 +194,6 @@ class _Counted(NamedTuple):
 
     def part(self, which: np.ndarray) -> _Counted:
         return _Counted(self.values[which], self.counts[which])
-
-    @property
-    def median(self) -> float:
-        ends = np.cumsum(self.counts)
-        middle = np.searchsorted(ends, [(ends[-1] - 1) // 2, ends[-1] // 2], side="right")
-        return float(np.sum(self.values[middle])) / 2.0
 
 
 def _is_flank(place: float, known: _Counted, density: np.ndarray) -> bool:

@@ -8,15 +8,12 @@ import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from mffit.made import COMPUTING, libraries, made
 from mffit.report import constants, numbers, typeset
 from mffit.report.drawing.records import Sheet, with_fewer_rows
 from mffit.report.text.filling import templates
-
-if TYPE_CHECKING:
-    pass
 
 View = TypeVar("View")
 
