@@ -49,7 +49,7 @@ class Parameter:
     side_spread: float | None  #: the same for sideslip to one side only, where no data show it
     tyres_spread: float | None
     """Size that two thirds of published tyres have at most, of those that have it at all."""
-    tyres: int  #: of how many
+    tyres: int  #: of how many; 0 if judged from the range of a few
     needs: tuple[Need, ...]  #: what the data must vary
     files: str  #: which files have the key, see docs/parameters.md; "" for all, :data:`REGULAR` for complete ones
     equation: str  #: the equation that contains it
@@ -140,7 +140,7 @@ def _parameter(order: int, row: dict[str, str]) -> Parameter:
         symmetric_spread=float(tied["symmetric"]) if "symmetric" in tied else None,
         side_spread=float(tied["side"]) if "side" in tied else None,
         tyres_spread=float(tied["tyres"].partition("/")[0]) if "tyres" in tied else None,
-        tyres=int(tied.get("tyres", "/0").partition("/")[2]),
+        tyres=int(tied.get("tyres", "").partition("/")[2] or 0),
         needs=tuple(_need(word) for word in row["needs"].split()),
     )
 

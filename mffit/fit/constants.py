@@ -37,20 +37,6 @@ USUAL_MISFIT_OF_RADIUS = Real(
     "m",
     "Scatter of a loaded or rolling radius where as many coefficients as means leave none to see.",
 )
-SPREADS_OF_RADII = Series(
-    (0.0007, 0.03, 0.2, 0.2, 1.0),
-    "-",
-    "Standard deviations of Q_V1, Q_V2, Q_FCX, Q_FCY and Q_CAM3 where nothing states them; published files have 0.0005 to "
-    "0.0008, 0.02 to 0.05, -0.13 to 0.11, 0.12 to 0.23 and 0 to 0.5.",
-)
-
-# Rolling resistance: standard deviations among tyres, from published files
-ROLLING_SPREADS = Series(
-    (0.01, 0.01, 0.001, 0.00005, 0.02, 0.01, 0.15, 0.3),
-    "-",
-    "Standard deviations of QSY1-8 among tyres: rolling resistance over load is 0.007 to 0.02, and public files have QSY3 of "
-    "0.0004 and more, QSY7 of 0.85 to 1 and QSY8 of -0.4 to 0.",
-)
 
 # Estimates of what was not measured
 SLIP_OVER_CORNERING_STIFFNESS = Real(
@@ -174,9 +160,4 @@ LEAST_MOVE_OF_A_STEP = Real(
     0.02,
     "-",
     "Move between two samples, over the largest one of a run of steps, that is part of a step rather than noise of the setting.",
-)
-CARCASS_TERM_SPREAD = Series(
-    (0.2, 0.1, 0.3),
-    "-",
-    "Standard deviations of PCFX1-3 and PCFY1-3 that no run shows: public files have 0.1 to 0.2, -0.02 to -0.05, and 0.1 to 0.4.",
 )

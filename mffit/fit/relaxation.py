@@ -363,8 +363,10 @@ def _fitted(
     measured, u = (np.array([run.stiffness[k] for run in runs]) for k in (0, 1))
     nominal, *terms = direction.names
     numbers = {name: FreeNumber(name, 0.0) for name in terms}
-    for name, spread in zip(terms, constants.CARCASS_TERM_SPREAD, strict=True):
-        if name not in names:  # not determined by these runs: its prior contributes to the uncertainty
+    for name in terms:
+        # If these runs do not determine it, its prior contributes to the uncertainty. Public files have 0.1 to 0.2 over load,
+        # -0.02 to -0.05 over its square and 0.1 to 0.4 over pressure.
+        if name not in names and (spread := BY_NAME[name].tyres_spread):
             numbers[name] = replace(numbers[name], start=values[name], expected=values[name], spread=spread)
     middle = float(np.median(measured))
     numbers = {nominal: FreeNumber(nominal, middle, 0.1 * middle, 10.0 * middle), **numbers}

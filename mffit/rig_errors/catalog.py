@@ -35,9 +35,8 @@ def rig_error(name: str, row: dict[str, Any]) -> RigError:
 def _values(row: dict[str, Any]) -> dict[str, Any]:
     """The values of a table, with lists as tuples and numbers of judgement by their names."""
     values: dict[str, Any] = {k: tuple(x) if isinstance(x, list) else x for k, x in row.items()}
-    for key in ("default", "undisturbed"):
-        if isinstance(values.get(key), str):
-            values[key] = getattr(constants, values[key])
+    if isinstance(named := values.get("default"), str):
+        values["default"] = getattr(constants, named)
     return values
 
 

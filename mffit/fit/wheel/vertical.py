@@ -26,7 +26,7 @@ from tir.derivatives import plain
 from tir.equations import vertical
 from tir.frozen import ReadOnlyArrays
 from tir.outputs import outputs_of
-from tir.parameters import BY_NAME
+from tir.parameters import BY_NAME, TABLE
 
 GROWTH = "growth"
 """Growth of the free radius with pressure, relative to dpi. MF has no term for it, and without it PFZ1 would absorb it. Q_RE0
@@ -44,8 +44,11 @@ BOUNDS = {
     "Q_FCY": (0.0, 1.0),
     "Q_CAM3": (-8.0, 8.0),
 }
-SPREADS = dict(zip(("Q_V1", "Q_V2", "Q_FCX", "Q_FCY", "Q_CAM3"), constants.SPREADS_OF_RADII, strict=True))
-"""Standard deviation among tyres of coefficients that few test plans determine."""
+SPREADS = {
+    row.name: row.tyres_spread for row in TABLE if row.section == "VERTICAL" and row.tyres_spread is not None
+}
+"""Standard deviation among tyres of coefficients that few test plans determine: published files have Q_V1 of 0.0005 to 0.0008,
+Q_V2 of 0.02 to 0.05, Q_FCX of -0.13 to 0.11, Q_FCY of 0.12 to 0.23, and Q_CAM3 of 0 to 0.5."""
 OVER_SPEED = ("Q_V1", "Q_V2")
 """Coefficients that several speeds determine; with a single speed they are held and add to the uncertainties."""
 EVEN = ("Q_FCX", "Q_FCY")
@@ -190,7 +193,7 @@ def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Colle
         for name in OVER_SPEED
         if name not in held and not any(name in own for own in names.values())
     }
-    u = [constants.SIMILAR_TYRES_SPREAD * abs(x) or float(SPREADS[name]) for name, x in found.items()]
+    u = [constants.SIMILAR_TYRES_SPREAD * abs(x) or SPREADS[name] for name, x in found.items()]
     covariance, unseen, misfit = np.diag(np.square(u)), len(found), dict[str, float]()
     known = {**values, GROWTH: 0.0, **{n: 0.0 for n in ("Q_FZ2", "PFZ1") if n in names.get("RL", ())}}
     if loaded is not None and "VERTICAL_STIFFNESS" in names.get("RL", ()):
@@ -336,7 +339,7 @@ def _fitted(
 def _number(name: str, known: float, start: float, bounds: tuple[float, float]) -> FreeNumber:
     if name in EVEN:
         known, start = abs(known), max(abs(start), USUAL)
-    return FreeNumber(name, start, *bounds, expected=known, spread=float(SPREADS.get(name, math.inf)))
+    return FreeNumber(name, start, *bounds, expected=known, spread=SPREADS.get(name, math.inf))
 
 
 def _of_units(end: Solution, parts: Sequence[np.ndarray]) -> np.ndarray:
