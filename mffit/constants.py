@@ -20,7 +20,9 @@ MISFIT_AT_NOISE = Real(
 EXPLAINED_SHARE = Real(
     1.0 / 3.0, "-", "A known mistake explains an error if undoing it leaves less than this share."
 )
-MOST = Real(0.5, "-", "Share from which it is most of a range or of a misfit, or likelier than not.")
+MOST = Real(
+    0.5, "-", "Share from which it is most of a range, a misfit, a gain or a reading, or likelier than not."
+)
 LIKENESS_OF_MISSPELT = Real(0.6, "-", "Similarity (difflib) from which a key or heading counts as misspelt.")
 LONGEST_QUOTE = Count(60, "characters", "Longest quotation of a file in a message.")
 COVERAGE_FACTOR_95 = Real(1.959964, "-", "Coverage factor of a 95 % interval of a normal distribution.")

@@ -42,9 +42,3 @@ WEIGHT_OF_CURVATURE_LIMIT = Real(
 CURVATURE_MARGIN = Real(
     0.005, "-", "Distance of a fitted curvature factor from 1, so that none exceeds it between the loads."
 )
-CONVERTED_TOLERANCE = Real(
-    1e-3,
-    "-",
-    "Share of the sum of squares by which a step must reduce it: the misfit is then within two per cent of the least. Below, "
-    "terms of which the forces need one (QSX4 and QSX8 of PAC2002) run away together for hundreds of steps.",
-)

@@ -73,11 +73,6 @@ MOST_EXPLANATION_ROUNDS = Count(3, "-", "Most rounds of scatter, effects and coe
 SCATTER_SETTLED = Real(
     0.1, "-", "Relative change of the noise, of any reading or in the median, that ends the search."
 )
-NOISE_MOVED = Real(
-    1.0,
-    "-",
-    "Rms change of the readings of all effects together, over the noise, up to which the noise stays the same.",
-)
 GENEROUS_EFFECT_SIZE = Real(3.0, "-", "Size of effects over the usual one while the scatter is estimated.")
 # Where the misfit is
 MOST_UNEXPLAINED_REGIONS = Count(4, "-", "Most regions of unexplained misfit that are listed.")
@@ -110,11 +105,6 @@ UNIDENTIFIED_LOG_ODDS = Real(
     1.0, "-", "Added to the log prior odds of a coefficient at zero, else subtracted."
 )
 CANDIDATES_FITTED = Count(6, "-", "Best candidates of a step, to first order, that are fitted in full.")
-WORTH_FITTING = Real(
-    0.5,
-    "-",
-    "Gain of a candidate to first order, over that of the best one, from which it is fitted in full.",
-)
 STRUCTURE_EVIDENCE = Real(
     8.0, "-", "Log evidence beyond the price of the search that a bump or structure needs."
 )

@@ -61,7 +61,7 @@ def _all_at_once(search: Search) -> tuple[Simulation, Noise]:
         read = state.predict(points, search.channels)
         if before is not None:
             moved = rms(((read - before) / noise.u)[noise.used])
-            if moved < constants.NOISE_MOVED:
+            if moved < 1.0:  # over the noise: it stays the same
                 break
         noise = learned_noise(search, state)
     return state, noise

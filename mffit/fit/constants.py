@@ -77,7 +77,9 @@ LIMIT_WEIGHT_OF_DERIVED_FILE = Real(
 POINTS_OF_A_STAGE = Count(600, "-", "Most points of a first pass; the polish uses all.")
 STRIDE_DIVISOR = Count(8, "-", "Factor by which the points increase from pass to pass of the polish.")
 STAGE_TOLERANCE = Real(
-    1e-3, "-", "Relative gain that ends an early pass of a search, or the fit of an explanation."
+    1e-3,
+    "-",
+    "Relative gain that ends an early pass of a search, the fit of an explanation or that of a conversion.",
 )
 REFIT_STEPS = Count(12, "-", "Most least-squares steps of a refit that starts near its solution.")
 REFIT_TOLERANCE = Real(1e-4, "-", "Relative gain that ends such a refit.")

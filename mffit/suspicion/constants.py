@@ -66,9 +66,6 @@ SHARE_OF_WORST_POINTS = Real(
     "-",
     "Share of worst points of a sweep that are ignored: outliers, and ends where a formula is extrapolated.",
 )
-IMPLAUSIBLE_SHARE = Real(
-    0.5, "-", "Error that is refused without a known mistake, and that undoing one must not leave."
-)
 LARGEST_ERROR_OF_FORMULA = Real(
     4.0,
     "-",

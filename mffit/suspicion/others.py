@@ -15,7 +15,7 @@ import numpy as np
 from scipy.special import chdtrc, ndtr
 
 from mffit.as_json import keys
-from mffit.constants import CERTAIN_SIGMA, FEWEST, PREDICTION_FALSE_ALARM
+from mffit.constants import CERTAIN_SIGMA, FEWEST, MOST, PREDICTION_FALSE_ALARM
 from mffit.errors import InputError
 from mffit.points import Points
 from mffit.points.constants import UNLIKE_SHARE
@@ -163,9 +163,7 @@ def contradicting_sweep(seen: Sequence[Doubt]) -> Iterator[Facts]:
     refused whose factor no formula misses.
     """
     refused = [d for d in seen if d.mistake is not None] or [
-        d
-        for d in seen
-        if d.confirmed and d.gross.share > constants.IMPLAUSIBLE_SHARE and d.gross.vague < UNLIKE_SHARE
+        d for d in seen if d.confirmed and d.gross.share > MOST and d.gross.vague < UNLIKE_SHARE
     ]
     if not refused:
         return
@@ -313,5 +311,5 @@ def _away(
         measured = changed.channel(name)[np.isfinite(part.channel(name))]
         e = _error(name, found[name]._replace(error=error), size[name])
         least = min(rms(measured), rms(measured - error))
-        out[name] = Away(e.rms, e.share, e.rms <= constants.IMPLAUSIBLE_SHARE * least)
+        out[name] = Away(e.rms, e.share, e.rms <= MOST * least)
     return out

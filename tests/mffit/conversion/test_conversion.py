@@ -13,7 +13,7 @@ import pytest
 import tir
 from mffit import config as configuration
 from mffit.cli import main
-from mffit.conversion import check_old, constants, convert, is_old, mf52, read_old, to_old, wording
+from mffit.conversion import check_old, convert, is_old, mf52, read_old, refit, to_old, wording
 from mffit.conversion.grid import conditions, reach_of
 from mffit.errors import InputError
 from mffit.fit.known import known_before_fit
@@ -583,7 +583,7 @@ def soft_and_odd(tmp_path_factory):
 
 def test_the_search_ends_where_further_steps_hardly_change_the_side_force(monkeypatch):
     found = to_old(SAMPLE, "mf52").misfit
-    monkeypatch.setattr(constants, "CONVERTED_TOLERANCE", 1e-9)
+    monkeypatch.setattr(refit, "STAGE_TOLERANCE", 1e-9)
     for row, best in zip(found, to_old(SAMPLE, "mf52").misfit, strict=True):
         assert row.channel != "Fy" or row.rms == pytest.approx(best.rms, rel=0.02)
 
