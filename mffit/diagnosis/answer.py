@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config, axis_signs
-from mffit.constants import MOST
+from mffit.constants import MOST, PREDICTION_FALSE_ALARM
 from mffit.diagnosis import constants, wording
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.explanation import Explanation
@@ -31,6 +31,7 @@ from mffit.effects import Effect
 from mffit.points import Points
 from mffit.rig import Readings
 from mffit.rig_errors import T_REF
+from mffit.scatter import beyond
 from mffit.suspicion.outliers import Outlier, outliers
 from tir import Tyre
 from tir.mode import with_turn_slip
@@ -146,7 +147,7 @@ def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier,
     if noise.weight is None:
         return ()
     usual, away = noise.u * np.sqrt(noise.weight), np.abs(noise.measured(points) - after)
-    ratio = np.full(len(points), float(constants.DIAGNOSED_OUTLIER_RATIO))
+    ratio = np.full(len(points), beyond(PREDICTION_FALSE_ALARM / len(noise.used)))
     least = np.concatenate([weights(ratio, one.tails, 1.0) for one in noise.scatter.values()])
     used = np.where((noise.weight < least) & (away > ratio[0] * usual), np.inf, usual)
     return outliers(points, *(Readings.split(rows, noise.channels) for rows in (usual, used, after)))

@@ -13,14 +13,6 @@ OPPOSED_CORRELATION = Real(
     -0.3, "-", "Correlation of measured and simulated readings below which signs differ."
 )
 MISFIT_OF_ANOTHER_TYRE = Real(30.0, "-", "Misfit over noise above which naming an effect would be a guess.")
-SAME_TYRE_DIMENSION = Real(
-    0.02,
-    "-",
-    "Relative difference of a dimension that wear and a tape measure explain; beyond it, another tyre.",
-)
-SAME_TYRE_REFERENCE = Real(
-    0.05, "-", "Relative difference of nominal load or pressure beyond which a model may be of another tyre."
-)
 
 # What the data must vary for an effect to be visible
 VISIBLE_SPIN_CAMBER = Real(0.2, "rad", "Smallest range of camber that shows the spin by camber alone.")
@@ -68,7 +60,6 @@ TAIL_DEGREES_OF_FREEDOM = Series(
 )
 MOST_READING_WEIGHT_ROUNDS = Count(4, "-", "Most rounds that estimate scatter and weights in turn.")
 READINGS_FOR_SCATTER = Count(400, "-", "Readings of a channel that suffice to estimate its scatter.")
-DIAGNOSED_OUTLIER_RATIO = Real(4.5, "-", "Misfit over noise above which a reading is listed as an outlier.")
 MOST_EXPLANATION_ROUNDS = Count(3, "-", "Most rounds of scatter, effects and coefficients in turn.")
 SCATTER_SETTLED = Real(
     0.1, "-", "Relative change of the noise, of any reading or in the median, that ends the search."
@@ -158,9 +149,4 @@ LEAST_ALTERNATIVE = Real(1e-4, "-", "Weight below which an effect is not listed 
 # Validation
 PARTS_OF_A_RUN = Count(
     4, "-", "Parts of every run that are left out in turn, where numbers of single runs are checked."
-)
-
-# What a fit leaves
-IMITATED_SHARE = Real(
-    1e-3, "-", "Share of an effect below which fitted numbers imitate it and residuals say nothing."
 )

@@ -22,6 +22,7 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.influences.joint import JointFit
 from mffit.least_squares import FreeNumber, touches
 from mffit.linearised import LinearisedFit
+from mffit.linearised.constants import LEAST_KNOWN
 from mffit.points import Points
 from mffit.scatter import beyond, rms
 from mffit.suspicion import HeldNumber, LeftOutSweeps
@@ -186,9 +187,7 @@ class Left(NamedTuple):
         rows = np.zeros((len(self.joint.model.residual), change.shape[1]))
         rows[: len(change)] = np.nan_to_num(change) / self.joint.sigma.ravel()[:, None]
         found = self.joint.further(rows)
-        seen = np.diag(found.information) > constants.IMITATED_SHARE * np.maximum(
-            np.sum(rows**2, axis=0), 1e-12
-        )
+        seen = np.diag(found.information) > LEAST_KNOWN * np.maximum(np.sum(rows**2, axis=0), 1e-12)
         if not seen.any():
             return None
         information, pull = found.information[np.ix_(seen, seen)], found.pull[seen]

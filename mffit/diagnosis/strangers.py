@@ -15,6 +15,7 @@ from mffit.errors import InputError
 from mffit.points import Points
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
+from mffit.suspicion.constants import DIFFERENCE_OF_ANOTHER_TYRE
 from tir import Tyre
 
 
@@ -48,20 +49,20 @@ def refuse_strangers(
 
 def another_tyre(tyre: Tyre, config: Config) -> AnotherTyre | None:
     """Differences between the model and ``tyre.toml`` in dimensions and nominal conditions; None without any."""
-    given, dimension, reference = config.tyre, constants.SAME_TYRE_DIMENSION, constants.SAME_TYRE_REFERENCE
-    stated = (
-        ("UNLOADED_RADIUS", given.unloaded_radius, dimension),
-        ("WIDTH", given.width, dimension),
-        ("RIM_RADIUS", given.rim_radius, dimension),
-        ("FNOMIN", given.nominal_load, reference),
-        ("NOMPRES", 1e3 * given.nominal_pressure, reference),
-    )
+    given = config.tyre
+    stated = {
+        "UNLOADED_RADIUS": given.unloaded_radius,
+        "WIDTH": given.width,
+        "RIM_RADIUS": given.rim_radius,
+        "FNOMIN": given.nominal_load,
+        "NOMPRES": 1e3 * given.nominal_pressure,
+    }
     differences = tuple(
         (name, float(tyre[name]), value)
-        for name, value, tolerance in stated
+        for name, value in stated.items()
         if value is not None
         and name in tyre.present
-        and abs(float(tyre[name]) - value) > tolerance * abs(value)
+        and abs(float(tyre[name]) - value) > DIFFERENCE_OF_ANOTHER_TYRE * abs(value)
     )
     return AnotherTyre(differences) if differences else None
 

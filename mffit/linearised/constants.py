@@ -59,5 +59,7 @@ LONGEST_CHAIN = Count(
     200, "-", "Readings after which a chain of errors with a memory is cut: many memories of any rig."
 )
 LEAST_KNOWN = Real(
-    1e-3, "-", "Smallest share of a reading's information that columns leave to it; keeps its error finite."
+    1e-3,
+    "-",
+    "Smallest share of the information of a reading or an effect that other columns leave to it; below, residuals say nothing.",
 )

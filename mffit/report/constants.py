@@ -10,7 +10,6 @@ POINTS_PER_SERIES = Count(
 MOST_MARKS = Count(150, "-", "Panels with more marks show them small, so that they cover each other less.")
 MOST_PANELS = Count(60, "-", "Most panels of a picture: three pages. The caption says what is left out.")
 
-SLIP_SET_POINT_WIDTH = Real(0.01, "-", "Longitudinal slips closer than this count as one set-point.")
 HELD_SHARES = Series(
     (0.0, 0.4, 0.8), "-", "What curves hold, as shares of the tested camber, sideslip and slip."
 )

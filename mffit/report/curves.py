@@ -11,7 +11,6 @@ from mffit.constants import FEWEST, STEPS_OF_LINE
 from mffit.parts.constants import SAME_CAMBER
 from mffit.points import Points, levels
 from mffit.quantities import CONDITIONS, SIDEWAYS
-from mffit.report import constants
 from mffit.rig import Simulation
 from tir.frozen import ReadOnlyArrays
 
@@ -143,7 +142,7 @@ def _along(points: Points, name: str, over: str, rows: np.ndarray, keys: Sequenc
 
 def _set_points(values: np.ndarray, over: str) -> int:
     """Number of set-points of an angle (k,) [deg], or of longitudinal slip."""
-    width = constants.SLIP_SET_POINT_WIDTH if over == "kappa" else SAME_CAMBER
+    width = levels.SLIP.tolerance if over == "kappa" else SAME_CAMBER
     return len(np.unique(np.round(values / width)))
 
 

@@ -17,11 +17,11 @@ USUAL_CAMBER_THRUST = Series(
 )
 
 # Another tyre
-RADIUS_OF_ANOTHER_TYRE = Real(
+DIFFERENCE_OF_ANOTHER_TYRE = Real(
     0.03,
     "-",
-    "Relative difference of the radii of two files at one condition that means two tyres: a worn tread is 0.01 to 0.02 "
-    "smaller, a warmer tyre 0.005 larger, and a repeated run differs by less.",
+    "Relative difference of a dimension, of radii at one condition or of a nominal condition that means another tyre: a worn "
+    "tread is 0.01 to 0.02 smaller, a warmer tyre 0.005 larger, and a tape measure or a repeated run differs by less.",
 )
 LARGEST_RADIUS = Real(
     1.1,

@@ -106,7 +106,7 @@ def two_tyres(points: Points, config: Config) -> Iterator[Facts]:
                 cells.loc[other], left_index=True, right_index=True, suffixes=("_a", "_b")
             )
             apart = np.abs(both.median_a / both.median_b - 1.0)
-            if both.empty or apart.median() <= constants.RADIUS_OF_ANOTHER_TYRE:
+            if both.empty or apart.median() <= constants.DIFFERENCE_OF_ANOTHER_TYRE:
                 continue
             best = both.loc[both[["size_a", "size_b"]].min(axis=1).idxmax()]
             facts = {
