@@ -1,4 +1,4 @@
-"""Numbers of judgement of the runs that a rig could add: their set-points."""
+"""Numbers of judgement of the runs that a rig could add; set-points of one kind of run are in its record."""
 
 from __future__ import annotations
 
@@ -9,12 +9,6 @@ SWEEP_SHARES = Series(
     "-",
     "Angles of a sweep over its largest; closer where the curves bend.",
 )
-ZERO_ANGLE = Real(1.0, "deg", "Largest sideslip of a run for zeros; the side force is linear up to it.")
-COUPLED_CAMBERS = Series((10.0, 20.0, 35.0), "deg", "Cambers at which a sideslip sweep is proposed.")
-COMBINED_SIDESLIPS = Series(
-    (2.0, 6.0), "deg", "Sideslips at which a sweep of longitudinal slip is proposed: below and near the peak."
-)
-LEANED_SLIP_CAMBERS = Series((4.0,), "deg", "Cambers at which a sweep of longitudinal slip is proposed.")
 LARGEST_SLIP = Real(
     0.15, "-", "Largest longitudinal slip that is proposed where none was run: beyond the peak of dry tyres."
 )
@@ -27,7 +21,6 @@ SECOND_RADIUS_FACTOR = Real(
 )
 FASTER = Real(2.0, "-", "Speed of an added run over the usual one.")
 WARMER = Real(20.0, "K", "Temperature of an added run above the usual one.")
-LATER = Real(900.0, "s", "Time after the end of the test at which a run is repeated.")
 
 WORTHWHILE_FALL = Real(
     0.05,

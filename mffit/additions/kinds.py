@@ -50,9 +50,8 @@ _NEW_SETUP = (
     "If nothing is set up anew in between, give these sweeps the setup of the others; their zeros cancel then."
 )
 _SHARES = constants.SWEEP_SHARES
-_ZEROS = tuple(
-    LineOfPoints("alpha", (-1.0, -0.5, 0.0, 0.5, 1.0), constants.ZERO_ANGLE, way) for way in (1, -1)
-)
+_ZEROS = tuple(LineOfPoints("alpha", (-1.0, -0.5, 0.0, 0.5, 1.0), 1.0, way) for way in (1, -1))
+"""The side force is linear up to the largest of these angles."""
 _SMALL_CAMBERS = (LineOfPoints("gamma", _SHARES, CAMBER_OF_SLOPES),)
 _SIDESLIP = (LineOfPoints("alpha", _SHARES),)
 _CAMBER = (LineOfPoints("gamma", _SHARES),)
@@ -137,7 +136,7 @@ ADDITIONS = (
         title="sideslip sweeps at camber of both signs",
         reason="How camber changes the curves over sideslip is visible only where both angles act together.",
         lines=tuple(LineOfPoints("alpha", _SHARES, side=side) for side in (-1, 1)),
-        held_deg=constants.COUPLED_CAMBERS,
+        held_deg=(10.0, 20.0, 35.0),
     ),
     _on_disc(
         id="unspun",
@@ -178,14 +177,14 @@ ADDITIONS = (
         reason="How sideslip and slip take force from each other is seen only where both act together.",
         lines=_DRIVE_TO_BOTH_SIDES,
         held="alpha",
-        held_deg=constants.COMBINED_SIDESLIPS,
+        held_deg=(2.0, 6.0),  # below and near the peak
     ),
     _driven(
         id="drive-camber",
         title="sweeps of longitudinal slip at camber of both signs",
         reason="Camber changes the peak of the longitudinal force, and the moment of slip about the two other axes.",
         lines=_DRIVE_TO_BOTH_SIDES,
-        held_deg=constants.LEANED_SLIP_CAMBERS,
+        held_deg=(4.0,),
     ),
     _driven(
         id="drive-pressure",
@@ -222,7 +221,7 @@ SEPARATING = (
         id="late",
         title="sideslip sweep at the end of the test",
         reason="Drift and wear grow with time and distance.",
-        later=constants.LATER,
+        later=900.0,
     ),
     _driven(
         id="backward-drive",
