@@ -100,7 +100,7 @@ def _saturating(x: bytes, y: bytes, u: bytes, curvature: float) -> tuple[float, 
     angle, force, error = (np.frombuffer(one) for one in (x, y, u))
     first = np.argsort(angle)[:3]
     start = float(np.sum(angle[first] * force[first]) / np.sum(angle[first] ** 2))
-    top = max(float(np.max(np.abs(force))), 1e-9) * np.sign(start or 1.0)
+    top = max(float(np.max(np.abs(force))), 1e-9)
     numbers = [
         FreeNumber("slope", 1.05, 0.2, 5.0),  # relative to its first estimate
         FreeNumber("ceiling", 1.2, 0.7, 20.0),  # relative to the largest value
