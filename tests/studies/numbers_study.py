@@ -90,7 +90,7 @@ def figures(projects: Sequence[Path], commands: Sequence[str]) -> dict[str, obje
 
     found: dict[str, object] = {}
     for project in projects:
-        given = {"build": ["--no-report"], "diagnose": [str(project.with_name(MODEL))], "plan": []}
+        given = {"build": ["--no-report"], "diagnose": ["--model", str(project.with_name(MODEL))], "plan": []}
         for command in commands:
             said, failed, name = io.StringIO(), io.StringIO(), f"{command} {project.parent.name}"
             with tempfile.TemporaryDirectory() as out, redirect_stdout(said), redirect_stderr(failed):
