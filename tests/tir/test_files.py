@@ -491,6 +491,7 @@ class TestCheck:
             (TURN_SLIP_DEFAULTS, "warning", "common defaults"),
             ({"USE_MODE": 225.0}, "warning", "licence"),
             ({"USE_MODE": 124.0, "MC_CONTOUR_A": 0.1}, "warning", "motorcycle"),
+            ({"USE_MODE": 200.0, "MC_CONTOUR_A": 0.0}, "warning", "is not a motorcycle tyre"),
             ({"FITTYP": 61.0, "Q_CAM1": 0.4}, "warning", "Q_CAM1"),
             ({"QSX4": 0.1, "QSX12": 0.1}, "warning", "same effect"),
             ({"INFLPRES": 900e3, "PRESMAX": 400e3}, "warning", "PRESMAX"),

@@ -7,18 +7,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
 
 from mffit import config as configuration
 from mffit.config.loading import STAND_IN
+from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
-from mffit.diagnosis.priors import log_prior
+from mffit.diagnosis.priors import beyond_declaration, log_prior
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.selection import Contest
 from mffit.diagnosis.stated import stated_noise
 from mffit.diagnosis.ties import Separation, separation
 from mffit.diagnosis.validation import gap, validate
 from mffit.effects import CATALOG, Effect, Free
+from mffit.least_squares import FreeNumber
 from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
@@ -233,3 +236,14 @@ def test_without_an_effect_the_gap_stays():
     chosen = problem(read(programme(), noise=5))
     nothing = validate(chosen, chosen.null)
     assert nothing.gap_before == nothing.gap_after
+
+
+@pytest.mark.parametrize(("value", "u"), [(0.3, 0.1), (2.5, 0.1), (2.5, 1.0), (-6.0, 2.5)])
+def test_a_declaration_is_the_prior_of_all_rigs_but_a_few(value, u):
+    """Against the usual size, 2 around 0; a declaration may be wrong, and wider than usual it never favours an effect."""
+    known = FreeNumber("F0_N", 0.0, expected=0.0, spread=2.0)
+    ratio = norm.pdf(value, 0.5, u) / norm.pdf(value, 0.0, 2.0) * max(u / 2.0, 1.0)
+    worse = float(constants.RIGS_WORSE_THAN_DECLARED)
+    found = beyond_declaration(known, value, {"F0_N": (0.5, u)})
+    assert found == pytest.approx(min(math.log((1.0 - worse) * ratio + worse), 0.0), abs=1e-12)
+    assert beyond_declaration(known, value, {}) == 0.0

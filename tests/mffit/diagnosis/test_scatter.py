@@ -6,9 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import MemorySpan, Noise, Scatter
+from mffit.diagnosis.rest import _log_odds
 from mffit.diagnosis.scatter import ExplainingColumns, learned
 from mffit.diagnosis.stated import stated_noise
 from mffit.diagnosis.tails import beyond_weights, heavy_tails, weights
@@ -270,3 +272,12 @@ def test_columns_of_any_size_have_a_factor():
     small = rng.normal(size=(40, 6))
     root = Informed.of_rows(small, np.zeros(40)).factor
     assert np.allclose(root @ root.T, small.T @ small + np.eye(6))
+
+
+@pytest.mark.parametrize("ratio", [0.5, 1.0, 1.3, 4.0])
+def test_evidence_of_a_larger_scatter_is_the_likelihood_of_its_readings(ratio):
+    """Readings of this rms under a normal distribution of their own width, against one of unit width."""
+    readings = np.random.default_rng(3).standard_normal(60)
+    readings *= ratio / rms(readings)
+    gain = np.sum(norm.logpdf(readings, scale=ratio) - norm.logpdf(readings))
+    assert _log_odds(ratio, 60) == pytest.approx(gain if ratio > 1.0 else 0.0, abs=1e-9)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import pytest
+from scipy.special import softmax
 
 from mffit.diagnosis import answer
 from mffit.diagnosis.answer import Judgement
@@ -24,3 +25,25 @@ def test_numbers_are_as_uncertain_as_the_tied_explanations_are_apart(monkeypatch
     monkeypatch.setattr(answer, "_judged", lambda found, effect: judged[effect])
     found = explained({"a": 2.0, "b": 1.0}, {"a": 0.1, "b": 0.2})
     assert answer._stated_u(found, found) == pytest.approx({"a": 0.1, "b": expected})
+
+
+def test_the_confidence_in_an_effect_is_its_share_of_the_evidence_of_all_that_may_stand_in_its_place():
+    """Rivals that the readings exclude, 1.7 and 2.2 behind in log evidence, of an effect that acts in nine of ten cases."""
+
+    def explanation(name, evidence):
+        return SimpleNamespace(
+            effects=(SimpleNamespace(id=name),), ids=frozenset({name}), log_evidence=evidence,
+            apart=lambda other: 100.0, excludes=lambda other, chance: True,
+        )  # fmt: skip
+
+    chosen, rivals = explanation("a", -5.0), [explanation("r", -6.7), explanation("s", -7.2)]
+    found = SimpleNamespace(
+        chosen=chosen,
+        contests=[SimpleNamespace(fitted=[chosen, *rivals])],
+        predicted={},
+        confidence=lambda effect: 0.9,
+    )
+    share = softmax([-5.0, -6.7, -7.2])[0]
+    judged = answer._judged(found, chosen.effects[0])
+    assert judged.tied == ()
+    assert judged.confidence == judged.together == pytest.approx(answer.tempered(0.9 * share))

@@ -16,7 +16,7 @@ import tir
 from mffit import as_json
 from mffit import config as configuration
 from mffit.errors import InputError
-from mffit.fit.influences.confounding import confounding_sentence, confoundings
+from mffit.fit.influences.confounding import confounding_sentence, confoundings, correlation_ratio
 from mffit.fit.influences.nuisance_choice import choose
 from mffit.fit.influences.nuisances import NUISANCES
 from mffit.pipeline.measuring import measure
@@ -468,3 +468,12 @@ def test_warming_without_an_effect_is_not_modelled_even_if_runs_differ(scatter, 
     """Thirteen gripping and slipping runs in some order are more or less like a warming."""
     result = drawn_campaign(1, tmp_path, {}, scatter)
     assert not verdict(result.fit.choice, "temperature").modelled
+
+
+@pytest.mark.parametrize(("spread", "ratio"), [(0.0, 0.0), (0.2, np.sqrt(0.5)), (20.0, np.sqrt(0.5))])
+def test_the_correlation_ratio_does_not_depend_on_the_size_of_the_temperature(spread, ratio):
+    """Warmest at the middle one of three pressures, and as much again within each: half of the variance is explained."""
+    p, way = np.repeat([180e3, 220e3, 260e3], 4), np.tile([1.0, -1.0], 6)
+    between = np.where(p == 220e3, np.sqrt(2.0), -np.sqrt(0.5))
+    points = make_points(0.02, 0.0, 1500.0, p=p, V=6.0, phi_t=0.0, T=30.0 + spread * (between + way))
+    assert correlation_ratio(points, "p") == pytest.approx(ratio)

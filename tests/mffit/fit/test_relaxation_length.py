@@ -159,6 +159,14 @@ def test_steps_that_take_long_are_no_steps(campaign, setting):
     assert setting not in steps(slow, phi_t, 0.3185)
 
 
+def test_a_run_with_a_time_twice_has_no_rolled_distance_and_so_no_steps(campaign):
+    series = [sweep for sweep in load(campaign).sweeps if sweep.is_series]
+    twice = [replace(sweep, time=np.r_[sweep.time[:1], sweep.time[:-1]]) for sweep in series]
+    phi_t = {sweep.file: 0.0 for sweep in series}
+    assert steps(series, phi_t, 0.3185)
+    assert not steps(twice, phi_t, 0.3185)
+
+
 def test_steps_of_slip_at_sideslip_show_no_length_of_straight_running(campaign):
     series = [sweep for sweep in load(campaign).sweeps if sweep.is_series]
     steered = [replace(sweep, alpha=sweep.alpha + np.radians(2.0)) for sweep in series]

@@ -15,6 +15,7 @@ from mffit.fit.comments import file_comments
 from mffit.fit.known import Known, known_before_fit
 from mffit.fit.wording import file_sentences, ranges_sentence
 from mffit.fit.written.files import file_names, make_files
+from mffit.fit.written.misfit import figures
 from mffit.fit.written.road import Road, inside, road_grid, weights
 from mffit.pipeline.measuring import measure
 from mffit.points import make_points
@@ -202,3 +203,22 @@ def test_several_pressures_are_stated_as_a_range(files):
     made, _ = files
     several = replace(made, tested=made.tested | {"PRESMIN": 200e3, "PRESMAX": 300e3})
     assert "camber to 45.0 deg, 200 to 300 kPa." in ranges_sentence(several)
+
+
+def test_a_file_of_both_uses_states_its_misfit_at_every_place(files):
+    made, _ = files
+    grid, tyre, model, phi_t = road_grid(made.tested, made.written, 1400.0), truth(), truth(), -0.7
+    tyre = tyre.replace(PKY6=1.2 * tyre["PKY6"])
+    misfit = figures(tyre, "both", model.values, grid, made.tested, phi_t).misfit
+    for place, (turn_slip, path) in {
+        "straight": (False, 0.0),
+        "straight_with_turn_slip": (True, 0.0),
+        "disc": (True, phi_t),
+    }.items():
+        own, aim = (
+            one(grid.Fz, grid.alpha, grid.gamma, phi_t=path, p=grid.pressure, turn_slip=on).Mz
+            for one, on in ((tyre, turn_slip), (model, True))
+        )
+        assert misfit[place]["Mz"].largest == pytest.approx(
+            np.max(np.abs((own - aim)[inside(grid, made.tested)])), rel=1e-6
+        )

@@ -92,6 +92,15 @@ def test_a_noise_beyond_the_stated_one_is_proven(found):
     assert 0.3 * alone < half.proof_of_noise < alone
 
 
+def test_a_constant_alone_proves_no_model_error_whatever_the_noise_of_each_reading():
+    points = drawn(missed=0.0)
+    noise = np.where(np.arange(len(points)) % 3, NOISE, 3.0 * NOISE)
+    shifted = points.replace(Fy=points.Fy + 20.0 * OFFSET, u_Fy=noise)
+    channel = linearised(shifted, simulation(), {"Fy": noise}, NUMBERS).channels["Fy"]
+    assert channel.size == pytest.approx(20.0 * OFFSET, rel=0.05)
+    assert not channel.is_proven
+
+
 def test_a_single_reading_shows_a_constant_at_most():
     one = drawn().select(np.array([10]))
     channel = left(one)

@@ -7,6 +7,7 @@ import pytest
 
 from mffit.constants import STRAIGHT
 from mffit.points import make_points
+from mffit.points.other_label import _Compared as Compared
 from mffit.points.other_label import other_labels
 
 LOADS, PRESSURES = (800.0, 1600.0), (200e3, 250e3)
@@ -140,3 +141,11 @@ def test_angles_that_are_a_little_off_are_brought_together_by_the_slope(off):
     assert not other_labels(campaign(angles=angles, off=off))
     (found,) = other_labels(campaign(angles=angles, off=off, wrong={"1600-250-0a": {"p": 200e3}}))
     assert (found.sweep, found.column, found.other) == ("1600-250-0a", "p_kPa", pytest.approx(250.0))
+
+
+def test_the_scatter_over_the_force_is_what_noise_leaves():
+    """Differences of a twentieth of the force, and noise of a hundredth of it."""
+    force = np.array([200.0, 900.0, 2500.0])
+    found = Compared(np.hypot(0.05 * force, 0.01 * force), 0.01 * force, force, 1)
+    assert found.scatter == pytest.approx(0.05)
+    assert found.variance(found.scatter) == pytest.approx(found.apart**2)

@@ -12,7 +12,7 @@ from mffit.fit.influences.nuisances import NUISANCES
 from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.rig.lag import lagged_setting
-from mffit.rig_errors import BY_NAME, DECLARED, RIG_ERRORS, Faults, Place
+from mffit.rig_errors import BY_NAME, DECLARED, RIG_ERRORS, AtZero, Faults, Place
 from mffit.rig_errors import formulae as chain_formulae
 from mffit.virtual_rig.machine import Machine, steady
 from mffit.virtual_rig.recording import lagged
@@ -186,3 +186,18 @@ def test_an_error_acts_if_any_of_its_numbers_is_known_and_not_the_undisturbed_on
     for number, acts in ((usual, False), (math.nan, False), (other, True)):
         assert error.acts(number) is acts
         assert error.acts(np.array([usual, math.nan, number])) is acts
+
+
+@pytest.mark.parametrize(
+    ("name", "number", "turned_deg", "slope"),
+    [
+        ("backlash_deg", 0.3, 0.15, "C_alpha"),
+        ("gamma_0_deg", 0.5, 0.5, "C_gamma"),
+        ("disc_tilt_deg_per_kN", 0.2, 0.28, "C_gamma"),
+    ],
+)
+def test_an_angle_adds_the_force_of_its_slope_to_a_zero(name, number, turned_deg, slope):
+    """Half the play to the side of the moment, and the tilt of a disc under 1.4 kN."""
+    at = AtZero(C_alpha=-20e3, C_gamma=-1500.0, side_of_play=1.0, load=1400.0)
+    force = BY_NAME[name].declared.force_at_zero(number, at)
+    assert force == pytest.approx(getattr(at, slope) * np.radians(turned_deg))

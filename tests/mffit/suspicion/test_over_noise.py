@@ -19,7 +19,9 @@ import pytest
 from small_rigs import FY, SAMPLE, flat, simulated
 
 import mffit
+from mffit.points.noise import OverNoise
 from mffit.report import text
+from mffit.suspicion.trust import far
 from mffit.viewer.project import project_data
 
 Change = Callable[[pd.DataFrame], pd.DataFrame]
@@ -151,3 +153,13 @@ def test_sweeps_of_pressures_that_nobody_states_are_in_doubt(tmp_path):
         named = re.findall(r"sideslip\w+", one)
         assert named
         assert all("kPa" in name for name in named)
+
+
+@pytest.mark.parametrize("of_noise", [np.inf, 7])
+def test_chance_takes_noise_for_a_misfit_as_rarely_as_its_limit_says(of_noise):
+    """Readings that are noise, which is stated, or estimated from few others: beyond two sigma in 2.3 % of the draws."""
+    random, n, draws = np.random.default_rng(5), 5, 4000
+    known = random.chisquare(of_noise, draws) / of_noise if np.isfinite(of_noise) else np.ones(draws)
+    ratios = np.sqrt(random.chisquare(n, draws) / n / known)
+    share = np.mean([far(OverNoise(ratio, n, of_noise), 0.0, 2.0) for ratio in ratios])
+    assert share == pytest.approx(0.0228, abs=0.009)

@@ -95,3 +95,10 @@ def test_the_sentence_states_both_sizes():
         f"Mz is off the model by 9 Nm rms where sweeps turn back ({np.sum(off)} readings), and by 2 Nm"
         in sentence
     )
+
+
+def test_a_straight_leg_is_extrapolated_exactly():
+    points = swept()
+    straight = 3.0 - 40.0 * points.alpha
+    for leg in Reversals(points).legs:
+        assert np.sum(leg.lines * straight[leg.behind], axis=1) == pytest.approx(straight[leg.rows])

@@ -15,6 +15,7 @@ from mffit.errors import InputError
 from mffit.pipeline import init_from
 from mffit.recordings import sniff
 from mffit.sweeps import formats
+from mffit.sweeps.wide import LOAD_HEADING, RUN, stacked
 
 LOADS = (400.0, 800.0, 1600.0)
 GIVEN = {"unloaded_radius": 0.3, "nominal_load": 800.0, "nominal_pressure": 200.0}
@@ -156,3 +157,22 @@ def test_a_value_and_a_column_exclude_each_other(tmp_path):
     with pytest.raises(InputError, match="given together with column") as refused:
         configured(tmp_path, both)
     assert refused.value.key == "columns.gamma_deg.value"
+
+
+def test_a_column_of_text_stands_below_one_of_numbers_with_all_its_cells():
+    """The pressure of the second load has a gap, so that its cells are text; the sets have two and three rows."""
+    columns = {
+        "alpha_deg 1000N": np.array([-1.0, 1.0]),
+        "Fy_N 1000N": np.array([300.0, -310.0]),
+        "p_kPa 1000N": np.array([200.0, 201.0]),
+        "alpha_deg 2000N": np.array([-1.0, 0.0, 1.0]),
+        "Fy_N 2000N": np.array([580.0, 5.0, -590.0]),
+        "p_kPa 2000N": ["202.0", "", "204.0"],
+    }
+    found = stacked(columns, {})
+    assert found is not None
+    assert [*found.columns["p_kPa"]] == [200.0, 201.0, "202.0", "", "204.0"]
+    assert [*found.columns["Fy_N"]] == [300.0, -310.0, 580.0, 5.0, -590.0]
+    assert isinstance(found.columns["Fy_N"], np.ndarray)
+    assert [*found.columns[LOAD_HEADING]] == [1000.0] * 2 + [2000.0] * 3
+    assert found.columns[RUN] == ["1000"] * 2 + ["2000"] * 3
