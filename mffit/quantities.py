@@ -101,9 +101,9 @@ DIRECT = {
     "epsilon_gamma": QuantityName("camber reduction factor", "ε_γ", "-", "1 + r_e C_gamma / C_phit (17)", "PECP1 and PECP2"),
     "C_phit": QuantityName("turn-slip stiffness", "C_φt", "Nm", "turn-slip force over the curvature of the path (21)"),
     "F_phit": QuantityName("turn-slip force", "F_φt", "N", "at zero angles, corrected for rig errors (23)"),
-    "C_gamma": QuantityName("camber stiffness", "C_γ", "N/rad", SLOPE_ON_PATH),
-    "C_alpha": QuantityName("cornering stiffness", "C_α", "N/rad", SLOPE_ON_PATH),
-    "C_alpha_straight": QuantityName("cornering stiffness without spin", "C_α0", "N/rad", "slope at zero on a straight path"),
+    "C_gamma": QuantityName("measured camber stiffness", "C_γ", "N/rad", SLOPE_ON_PATH),
+    "C_alpha": QuantityName("measured cornering stiffness", "C_α", "N/rad", SLOPE_ON_PATH),
+    "C_alpha_straight": QuantityName("cornering stiffness", "C_α0", "N/rad", "slope at zero on a straight path"),
     "r_e": QuantityName("effective radius", "r_e", "m", "of the freely rolling wheel (18)", "Q_RE0"),
     "R": QuantityName("path radius", "R", "m", "of the usual path (19)"),
     "alpha_M": QuantityName("misalignment plus ply-steer", "α_M", "rad", "from zeros both ways"),
@@ -123,10 +123,10 @@ KEYS = {
 """Keys in property files and JSON of the results of the direct method, by name; of all but angles, which are stated in deg."""
 CHARACTERISTICS = {
     "epsilon_gamma": DIRECT["epsilon_gamma"],
-    "C_alpha_N_per_rad": DIRECT["C_alpha"],
-    "C_gamma_N_per_rad": DIRECT["C_gamma"],
+    "C_alpha_N_per_rad": DIRECT["C_alpha_straight"],
+    "C_gamma_N_per_rad": QuantityName("camber stiffness", "C_γ0", "N/rad"),
     "C_Mz_alpha_Nm_per_rad": QuantityName("aligning stiffness", "C_Mα", "Nm/rad"),
-    "C_phit_Nm": DIRECT["C_phit"],
+    "C_phit_Nm": QuantityName("turn-slip stiffness at zero spin", "C_φt0", "Nm"),
     "K_xk_N": QuantityName("slip stiffness", "K_xκ", "N"),
     "mu_x": QuantityName("peak longitudinal force per load", "μ_x", "-"),
     "mu_y": DIRECT["mu_y"],
@@ -134,7 +134,7 @@ CHARACTERISTICS = {
     "trail_m": QuantityName("pneumatic trail at zero slip", "t_0", "m"),
     "r_e_m": DIRECT["r_e"],
 }
-"""Characteristics by which two tyres are compared, by their key in JSON."""
+"""Characteristics of a property file, its slopes at zero on a straight path, by their key in JSON."""
 OF_ROAD = {key: name for name in ON_ROAD for key, known in CHARACTERISTICS.items() if known is DIRECT[name]}
 """Of these, the ones that a build states on the road, with their names there; a build as a whole has the lesser of both sides."""
 MODEL = {
@@ -146,8 +146,8 @@ MODEL = {
     "Vx": CONDITIONS["V_mps"],
     "pressure": CONDITIONS["p_kPa"],
     **{name: CHANNELS[name] for name in ("Fx", "Fy", "Mz", "Mx", "My")},
-    "K_ya": DIRECT["C_alpha"]._replace(symbol="K_yα"),
-    "K_yg0": DIRECT["C_gamma"]._replace(symbol="K_yγ0"),
+    "K_ya": CHARACTERISTICS["C_alpha_N_per_rad"]._replace(symbol="K_yα"),
+    "K_yg0": CHARACTERISTICS["C_gamma_N_per_rad"]._replace(symbol="K_yγ0"),
     "trail": QuantityName("pneumatic trail", "t", "mm"),
     "K_xk": CHARACTERISTICS["K_xk_N"],
     "sigma_y": QuantityName("lateral relaxation length", "σ_y", "m"),

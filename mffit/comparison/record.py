@@ -151,6 +151,7 @@ class Comparison(Brief):
     points: Points | None = None  #: the data, if the second side is measured
     simulation: Simulation | None = None  #: the file on the rig, compared with these data
     by_rig: ExplainedByRig | None = None  #: what errors of the rig explain, if the second side is measured
+    fitted: bool = False  #: whether a build fitted the file to these data
 
     @property
     def unequal(self) -> tuple[Difference, ...]:

@@ -31,12 +31,14 @@ BEYOND_95 = 0.05
 OF_DIRECT = {key: DIRECT[name] for name, key in KEYS.items()}
 
 
-def quantity(row: Difference) -> QuantityName:
-    """Word, symbol and unit of a number."""
+def quantity(found: Comparison, row: Difference) -> QuantityName:
+    """Word, symbol and unit of a number; against data, those of the direct method."""
     if row.load is None:
         known = BY_NAME[row.key]
         return QuantityName(known.description, row.key, known.unit)
-    named = CHARACTERISTICS.get(row.key) or OF_DIRECT[row.key]
+    if found.points is not None:
+        return OF_DIRECT[row.key]
+    named = CHARACTERISTICS[row.key]
     if row.key in OF_ROAD:  # a build's road states the best estimate under the plain name
         return named._replace(word=f"{named.word} of the file")
     return named
@@ -73,11 +75,14 @@ def _against_data(found: Comparison) -> list[str]:
             total = math.sqrt(sum(gap.n * gap.rms**2 for gap in rows) / sum(gap.n for gap in rows))
             parts.append(f"{total:.3g} {known.unit} rms in {channel}")
     missed = f"{found.first} misses {found.second} by {listed(parts)}."
-    return [missed] if found.by_rig is None else [missed, rig_or_tyre(found.by_rig)]
+    return [missed] if found.by_rig is None else [missed, rig_or_tyre(found.by_rig, fitted=found.fitted)]
 
 
-def rig_or_tyre(found: ExplainedByRig) -> str:
-    """Whether errors of the rig explain what a file misses of its readings, in a sentence or two."""
+def rig_or_tyre(found: ExplainedByRig, *, fitted: bool) -> str:
+    """Whether errors of the rig explain what a file misses of readings, in a sentence or two.
+
+    ``fitted``: whether the file was fitted to these readings; then what the rig leaves is the misfit of that fit.
+    """
     if found.is_noise:
         return "That is noise: nothing is left to explain."
     left = listed([f"{size:.3g} {CHANNELS[name].unit} in {name}" for name, size in found.left.items()])
@@ -85,6 +90,11 @@ def rig_or_tyre(found: ExplainedByRig) -> str:
     errors = f" ({named})" if named else ""
     if found.suffices:
         return f"It can be the rig: errors of the size that is declared{errors} leave {left}, which is noise."
+    if fitted:
+        return (
+            f"The file was fitted to these points: errors of the rig{errors} leave {left}, which is the misfit of the fit; the "
+            "report of its build judges it."
+        )
     rest = "the rest is the tyre, or an error that is not declared: mffit diagnose names it"
     if found.mostly:
         return f"Most of it can be the rig: errors of the size that is declared{errors} leave {left}; {rest}."
@@ -105,10 +115,10 @@ def _significant(found: Comparison) -> str:
         return f"All numbers of {found.first} and {found.second} are equal."
     known = sum(row.z is not None for row in (*found.numbers, *found.coefficients))
     if rows and found.sweeps:
-        return f"Numbers of the direct method that differ significantly: {some(_named(rows))}."
+        return f"Numbers of the direct method that differ significantly: {some(_named(found, rows))}."
     if rows:
         how_many = f"{len(rows)} of {known} numbers and coefficients"
-        return f"{found.first} and {found.second} differ significantly in {how_many}: {some(_named(rows))}."
+        return f"{found.first} and {found.second} differ significantly in {how_many}: {some(_named(found, rows))}."
     if known and found.sweeps:
         return "No number of the direct method differs significantly."
     if known:
@@ -122,14 +132,14 @@ def _significant(found: Comparison) -> str:
         )
     largest = max(found.unequal or found.coefficients, key=lambda row: row.relative)
     return (
-        f"The largest relative difference of {found.first} and {found.second} is that of {quantity(largest).word}, "
+        f"The largest relative difference of {found.first} and {found.second} is that of {quantity(found, largest).word}, "
         f"{100.0 * largest.relative:.3g} %."
     )
 
 
-def _named(rows: Iterable[Difference]) -> list[str]:
+def _named(found: Comparison, rows: Iterable[Difference]) -> list[str]:
     """Words of numbers and names of coefficients, each once."""
-    return list(dict.fromkeys(row.key if row.load is None else quantity(row).word for row in rows))
+    return list(dict.fromkeys(row.key if row.load is None else quantity(found, row).word for row in rows))
 
 
 def sides(row: Difference) -> tuple[str, str]:

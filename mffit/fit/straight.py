@@ -20,16 +20,16 @@ STEP = 1e-4  # rad; the curve bends by less than 1e-6 of its slope
 
 
 def straight_cornering_stiffness(fitted: FitResult, points: Points, row: LoadResult) -> Quantity | None:
-    """The tyre's cornering stiffness on a straight path [N/rad] at the load of the direct measurement; None if none was
-    measured.
+    """The tyre's cornering stiffness on a straight path [N/rad] at the load of the direct measurement on a disc; None if none
+    was measured.
 
     The value is the model's slope without turn slip. Three components make up its uncertainty: the posterior, a share of the
     correction from the curved to the straight path, and the part of the difference between the model's and the measured slope
     on the curved path that exceeds both uncertainties.
     """
+    if row.C_alpha is None:
+        return None
     phi_t = main_path(points)
-    if row.C_alpha is None or phi_t == 0.0:
-        return row.C_alpha
     tyre, posterior = fitted.simulation.faultless, fitted.posterior
     names = [name for name in posterior.names if name in tyre.values]
     straight, curved = (_slope(tyre, points, row.load, path, names) for path in (0.0, phi_t))

@@ -21,7 +21,7 @@ from mffit.measured import LoadResult
 from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of, read_base, read_points
 from mffit.pipeline.measuring import measure, without_play
-from mffit.pipeline.provenance import posterior_of, temperature_of, use_of
+from mffit.pipeline.provenance import fitted_to, posterior_of, temperature_of, use_of
 from mffit.points import Points
 from mffit.progress import READING, Progress, silent
 from mffit.rig import Simulation
@@ -163,7 +163,8 @@ def _with_data(subject: ComparedSubject, config: Config) -> Comparison:
     name = config.path.name if config.path is not None else config.tyre.name
     declared = declared_errors(config, points.used_setups, channels_of(points))
     found = against_points(subject, simulation, points, measured, of_file, name)
-    found = replace(found, by_rig=explained_by_rig(points, simulation, declared))
+    own = subject.known is not None and fitted_to(subject.tyre, config)
+    found = replace(found, by_rig=explained_by_rig(points, simulation, declared), fitted=own)
     if not warm:
         return found
     return replace(found, notes=(*found.notes, note_on_temperature(subject.name, warm[T_REF])))

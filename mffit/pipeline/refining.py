@@ -54,8 +54,8 @@ def _after(
     config: Config, points: Points, before: Measured, fitted: FitResult, spin: Quantity | None
 ) -> AfterFit:
     """What a fit adds to the measurements ``before`` it."""
-    stiffnesses = {} if config.rig.on_disc else at_rest(config, points, before, fitted)
-    if before.nominal is not None and not stiffnesses:
+    stiffnesses = {} if config.rig.on_disc else on_straight_path(config, points, before, fitted)
+    if config.rig.on_disc and before.nominal is not None:
         straight = fitting.straight_cornering_stiffness(fitted, points, before.nominal)
         if straight is not None:
             stiffnesses = {before.nominal.load: {"C_alpha_straight": straight._replace(origin="fitted")}}
@@ -64,25 +64,26 @@ def _after(
     return AfterFit(spin, fitted.epsilon_gamma_model, pecp1, stiffnesses)
 
 
-def at_rest(
+def on_straight_path(
     config: Config, points: Points, before: Measured, fitted: FitResult
 ) -> dict[float, dict[str, Quantity]]:
-    """By load [N], stiffnesses of the fitted model on a straight path where sweeps moved; empty if none did.
+    """By load [N], stiffnesses of the fitted model on a straight path; where sweeps moved, instead of the measured ones.
 
     The force lags behind a moving angle, and few readings at rest hardly show a slope. The fit separates
-    the lag from the tyre. They are stated at the nominal load, too, which is that of a build's headline.
+    the lag from the tyre. They are then stated at the nominal load, too, which is that of a build's headline.
     """
-    if not np.any(np.isfinite(points.time) & points.free_rolling):
-        return {}
+    moved = bool(np.any(np.isfinite(points.time) & points.free_rolling))
+    keys = {
+        "C_alpha_straight": KEYS["C_alpha"],
+        **({name: KEYS[name] for name in ("C_alpha", "C_gamma")} if moved else {}),
+    }
     found = {}
-    for load in (*(row.load for row in before.per_load), config.tyre.nominal_load):
+    for load in (*(row.load for row in before.per_load), *[config.tyre.nominal_load] * moved):
         numbers = characteristics(
             fitted.tyre, load, turn_slip=False, known=fitted.posterior, predictor=fitted.prediction
         )
-        named = {name: numbers[KEYS[name]] for name in ("C_alpha", "C_gamma")}
+        named = {name: numbers[key] for name, key in keys.items()}
         found[load] = {name: q._replace(origin="fitted") for name, q in named.items() if q.u}
-        if "C_alpha" in found[load]:
-            found[load]["C_alpha_straight"] = found[load]["C_alpha"]
     return found
 
 

@@ -62,7 +62,7 @@ def differences(found: Comparison) -> Sheet:
     colours = [style.CONTRAST if row in significant else style.FAINT for row in rows]
     panel = Panel(
         x=Axis(label="difference in standard uncertainties"),
-        y=listed([f"{wording.quantity(row).word}, {wording.place(row)}" for row in rows]),
+        y=listed([f"{wording.quantity(found, row).word}, {wording.place(row)}" for row in rows]),
         series=[Bars(name="difference", lengths=z, colours=colours)],
     )
     return Sheet(rows=[[panel]], height=0.20 * len(rows) + 0.3)

@@ -79,13 +79,9 @@ def headlines(result: BuildResult) -> list[Headline]:
     )
     fitted = {name for name, a in result.fit.channels.items() if a.n}
     loads = dict.fromkeys(of_model, load)
-    if nominal is not None:  # the same numbers as in result.json
-        of_result = {KEYS[name]: q for name, q in nominal.of_model.items()}
-        without_spin = of_result.pop(KEYS["C_alpha_straight"], None)
-        if result.on_disc:  # the tyre's cornering stiffness there
-            of_result = {} if without_spin is None else {KEYS["C_alpha"]: without_spin}
-        of_model |= of_result
-        loads |= dict.fromkeys(of_result, nominal.load)
+    if nominal is not None and nominal.C_alpha_straight is not None:  # the same number as in result.json
+        of_model[KEYS["C_alpha"]] = nominal.C_alpha_straight
+        loads[KEYS["C_alpha"]] = nominal.load
     of_road = _of_road(result.road)
     of_model |= of_road
     tested = Tested.of([tyre])
@@ -94,9 +90,7 @@ def headlines(result: BuildResult) -> list[Headline]:
         note = f"{'on the lesser side' if key in of_road else 'of the model'} {at}"
         if DECIDED_BY[key].channel in fitted and value.u:
             end = f"at {tested.end(key)}, the end of the tested range" if isinstance(value, AtLeast) else ""
-            straight = result.on_disc and key == KEYS["C_alpha"]
-            known = DIRECT["C_alpha_straight"] if straight else CHARACTERISTICS[key]
-            found.append(_headline(known, value, note, end))
+            found.append(_headline(CHARACTERISTICS[key], value, note, end))
     return found[:FOUR]
 
 

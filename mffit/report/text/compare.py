@@ -25,7 +25,7 @@ def comparison_table(found: Comparison) -> str:
     ]
     mean = f"mean, {found.second} less {found.first}"
     tables: list[tuple[tuple[str, ...], list[tuple[str, ...]], int]] = [
-        (("number", "load", *of_files), [_number(row) for row in numbers], 2),
+        (("number", "load", *of_files), [_number(found, row) for row in numbers], 2),
         (("coefficient", *of_files), [(row.key, *_values(row)) for row in found.coefficients], 1),
         (("sweep", "channel", "rms", mean, "rms over noise"), sweeps, 2),
     ]
@@ -35,8 +35,8 @@ def comparison_table(found: Comparison) -> str:
     return blocks([headline, *tables_within(room, shown, [left for _, rows, left in tables if rows]), notes])
 
 
-def _number(row: Difference) -> tuple[str, ...]:
-    known = wording.quantity(row)
+def _number(found: Comparison, row: Difference) -> tuple[str, ...]:
+    known = wording.quantity(found, row)
     return (known.column(known.word), wording.place(row), *_values(row))
 
 
