@@ -58,7 +58,10 @@ def _after(
     if config.rig.on_disc and before.nominal is not None:
         straight = fitting.straight_cornering_stiffness(fitted, points, before.nominal)
         if straight is not None:
-            stiffnesses = {before.nominal.load: {"C_alpha_straight": straight._replace(origin="fitted")}}
+            load = before.nominal.load
+            missed = of_forces(fitted, load, turn_slip=True)[KEYS["C_alpha"]].u  # counts the model error
+            u = max(straight.u, missed)
+            stiffnesses = {load: {"C_alpha_straight": straight._replace(u=u, origin="fitted")}}
     stderr = fitted.coefficients["PECP1"].stderr
     pecp1 = Quantity(float(fitted.written["PECP1"]), stderr or 0.0, "-")
     return AfterFit(spin, fitted.epsilon_gamma_model, pecp1, stiffnesses)
@@ -79,12 +82,17 @@ def on_straight_path(
     }
     found = {}
     for load in (*(row.load for row in before.per_load), *[config.tyre.nominal_load] * moved):
-        numbers = characteristics(
-            fitted.tyre, load, turn_slip=False, known=fitted.posterior, predictor=fitted.prediction
-        )
+        numbers = of_forces(fitted, load, turn_slip=False)
         named = {name: numbers[key] for name, key in keys.items()}
         found[load] = {name: q._replace(origin="fitted") for name, q in named.items() if q.u}
     return found
+
+
+def of_forces(fitted: FitResult, load: float, *, turn_slip: bool) -> dict[str, Quantity]:
+    """The characteristics of the fitted tyre at a load [N], with their uncertainties."""
+    return characteristics(
+        fitted.tyre, load, turn_slip=turn_slip, known=fitted.posterior, predictor=fitted.prediction
+    )
 
 
 def without_outliers(points: Points, fitted: FitResult) -> Points:

@@ -26,7 +26,7 @@ from mffit.sweeps.raw_table import (
     with_decimal_point,
     with_values,
 )
-from mffit.sweeps.units import UnknownUnitError, converted
+from mffit.sweeps.units import UnknownUnitError, converted, factor, is_unit
 from tir.frozen import ReadOnlyArrays
 
 DIRECTIONS = {"forward": 1, "backward": -1, "1": 1, "+1": 1, "-1": -1}
@@ -86,7 +86,7 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
     mapping = {name: one for name, one in mapping.items() if name not in shared or _applies(name, one, raw)}
     given = {name: column.value for name, column in mapping.items() if column.value is not None}
     raw = with_values(raw, given) if given else raw
-    headings = _headings(raw, mapping)
+    headings = _headings(raw, mapping, shared)
     found: dict[str, np.ndarray] = {}
     raw, warnings = _without_rows_that_are_none(raw, headings)
     raw, at_rest = _without_standstill(raw, headings)
@@ -166,7 +166,7 @@ def _applies(name: str, column: Column, raw: RawTable) -> bool:
     return in_file or (BY_NAME[name].required and name not in raw.headings)
 
 
-def _headings(raw: RawTable, mapping: Mapping[str, Column]) -> dict[str, str]:
+def _headings(raw: RawTable, mapping: Mapping[str, Column], shared: Collection[str]) -> dict[str, str]:
     """The heading of every contract column that the file has."""
     headings = {name: column.column or name for name, column in mapping.items()}
     for channel in SWEEP_CHANNELS:
@@ -174,25 +174,43 @@ def _headings(raw: RawTable, mapping: Mapping[str, Column]) -> dict[str, str]:
             headings[channel.name] = channel.name
     for name, heading in headings.items():
         if heading not in raw.headings:
-            raise _not_in_file(raw, name, heading)
+            raise _not_in_file(raw, name, heading, "[columns]" if name in shared else "[sweep.columns]")
     missing = [channel for channel in SWEEP_CHANNELS if channel.required and channel.name not in headings]
     if missing:
         raise _missing(raw, missing)
     return headings
 
 
-def _not_in_file(raw: RawTable, name: str, heading: str) -> InputError:
-    near = nearest_heading(BY_NAME[name], raw.headings)
+def _not_in_file(raw: RawTable, name: str, heading: str, table: str) -> InputError:
+    near = _nearest(raw, BY_NAME[name])
     hint = f'the nearest heading is "{near}"' if near else f"the headings are {', '.join(raw.headings)}"
-    sentence = f'has no heading "{heading}", which [sweep.columns] gives for {name}; {hint}'
+    sentence = f'has no heading "{heading}", which {table} gives for {name}; {hint}'
     return InputError(sentence, file=raw.path, line=raw.heading_line)
+
+
+def _nearest(raw: RawTable, channel: Channel) -> str:
+    """The heading that most likely names a channel; none whose unit is of another quantity."""
+    return nearest_heading(
+        channel, [name for name in raw.headings if _unit_of(channel, raw.unit(name)) is not None]
+    )
+
+
+def _unit_of(channel: Channel, unit: str) -> str | None:
+    """A unit that a file states, "" if it is none; None if it is one of another quantity than the channel's."""
+    if not (unit and is_unit(unit)):
+        return ""
+    try:
+        factor(unit, channel.unit)
+    except UnknownUnitError:
+        return None
+    return unit
 
 
 def _missing(raw: RawTable, channels: Sequence[Channel]) -> InputError:
     """The error about required columns that a file lacks, with a remedy for each."""
-    near = {channel: nearest_heading(channel, raw.headings) for channel in channels}
+    near = {channel: _nearest(raw, channel) for channel in channels}
     entries = [
-        f'{channel.name} = {{ column = "{heading}", unit = "{raw.unit(heading) or channel.unit}" }}'
+        f'{channel.name} = {{ column = "{heading}", unit = "{_unit_of(channel, raw.unit(heading)) or channel.unit}" }}'
         for channel, heading in near.items()
         if heading
     ]

@@ -53,7 +53,7 @@ def between_runs(found: NuisanceFit, points: Points) -> BetweenRuns | None:
     runs = tuple(dict.fromkeys(name.partition(OF_RUN)[2] for name in own))
     # The relative uncertainty of a standard deviation from n values, to first order.
     share = 1.0 / math.sqrt(2.0 * len(runs))
-    rest = without_runs(full.simulation).readings(points)
+    rest = without_runs(full.simulation).readings(points, full.problem.channels)
     return BetweenRuns(
         runs=runs,
         scatter={name: (value, share * value) for name, value in found.choice.scatter.items()},

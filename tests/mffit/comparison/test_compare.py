@@ -119,9 +119,10 @@ def test_a_comparison_says_where_the_readings_of_both_end():
 def test_peaks_of_a_file_have_another_name_than_those_of_a_road():
     """Reason and side are stated where a build, which has a road, is on either side; two plain files have none."""
     one, other = (ComparedSubject(name, reaching(truth(), 14.0), False) for name in "ab")
-    row = by_key(between(one, other))["mu_y"]
-    assert wording.quantity(row).word == f"{DIRECT['mu_y'].word} of the file"
-    assert wording.quantity(by_key(between(one, other))["trail_m"]).word == CHARACTERISTICS["trail_m"].word
+    found = between(one, other)
+    of_file = {key: wording.quantity(found, row).word for key, row in by_key(found).items()}
+    assert of_file["mu_y"] == f"{DIRECT['mu_y'].word} of the file"
+    assert of_file["trail_m"] == CHARACTERISTICS["trail_m"].word
     of_build = replace(other, build=moved("b", "may", {}))
     for sides, said in (((one, other), 0), ((one, of_build), 1), ((of_build, one), 1)):
         notes = [note for note in between(*sides).notes if "positive sideslip" in note]
@@ -323,7 +324,7 @@ def test_a_file_is_compared_with_data(folder, stiffer, tmp_path):
     apart = {c: wrong.points.channel(c) - read for c, read in readings.items()}
     Fy, Mz = (f"{np.sqrt(np.nanmean(gap**2)):.3g}" for gap in apart.values())
     assert f" by {Fy} N rms in Fy and {Mz} Nm rms in Mz. It is not the rig as" in wording.headline(wrong)
-    assert "differ significantly: cornering stiffness" in wording.headline(wrong)
+    assert "differ significantly: measured cornering stiffness" in wording.headline(wrong)
     # The same sign by sweep.
     for gap in wrong.sweeps:
         rows = np.array([wrong.points.sweep_names[k] == gap.sweep for k in wrong.points.sweep])
@@ -349,13 +350,32 @@ def test_a_gap_is_said_to_be_of_the_rig_or_of_the_tyre(folder, hidden, said, nam
     read = found.simulation.with_numbers(hidden).readings(found.points)
     made = {name: x + rng.normal(size=len(x)) * found.points.u(name) for name, x in read.items()}
     explained = explained_by_rig(found.points.replace(**made), found.simulation, DECLARED)
-    assert wording.rig_or_tyre(explained).startswith(said)
+    assert wording.rig_or_tyre(explained, fitted=False).startswith(said)
+    of_fit = wording.rig_or_tyre(explained, fitted=True)
+    assert of_fit.startswith(
+        said if explained.is_noise or explained.suffices else "The file was fitted to these points"
+    )
     if named is not None:
         assert named <= set(explained.errors)
         for name in named:
             assert explained.errors[name].value == pytest.approx(
                 hidden[name], abs=4.0 * explained.errors[name].u
             )
+
+
+def test_a_build_is_fitted_to_its_own_points_and_to_no_others(folder, stiffer, tmp_path):
+    """Neither the same forces in another file nor a reading that is new."""
+    stiffer.write(tmp_path / "stiffer.tir")
+    other = shutil.copytree(folder, tmp_path / "other")
+    table = next(other.glob("sideslip*.csv*"))
+    table.write_bytes(table.read_bytes() + b"\n")
+    for file, project, fitted in (
+        (folder / "out", folder, True),
+        (folder / "out" / "small.tir", folder, True),
+        (tmp_path / "stiffer.tir", folder, False),
+        (folder / "out", other, False),
+    ):
+        assert mffit.compare(file, project / "tyre.toml").fitted is fitted
 
 
 def test_chance_alone_makes_no_difference_significant():

@@ -21,7 +21,7 @@ from mffit.fit.influences.nuisance_choice import choose
 from mffit.fit.influences.nuisances import NUISANCES
 from mffit.pipeline.measuring import measure
 from mffit.points import make_points
-from mffit.quantities import DIRECT, KEYS
+from mffit.quantities import CHARACTERISTICS, KEYS
 from mffit.report.verdict import headlines
 from mffit.rig import Simulation
 from mffit.rounding import stated as in_words
@@ -406,9 +406,9 @@ def test_stiffnesses_of_moving_sweeps_are_those_of_the_tyre_at_rest(moved):
         value, u = stated[f"{name}_N_per_rad"], stated[f"u_{name}_N_per_rad"]
         assert value == pytest.approx(-slope * load, abs=0.05 * slope * load)
         assert u < 0.05 * slope * load
-        word = DIRECT[name].word
-        assert shown[f"{word[0].upper()}{word[1:]} {DIRECT[name].ascii}"] == in_words(
-            Quantity(value, u, "N/rad"), DIRECT[name].unit_behind
+        known = CHARACTERISTICS[KEYS[name]]
+        assert shown[f"{known.word.capitalize()} {known.ascii}"] == in_words(
+            Quantity(value, u, "N/rad"), known.unit_behind
         )
         assert moved.tyres["normal"].measured[KEYS[name]].origin == "fitted"
         assert not stated["budgets"]

@@ -52,6 +52,7 @@ def verdict(choice):
 def scattered(tmp_path_factory):
     folder = tmp_path_factory.mktemp("scattered")
     content = campaign(SIZE, seed=1)
+    content["noise"] = {"Fy_N": small_rigs.FY, "Mz_Nm": small_rigs.MZ, "Mx_Nm": 1.0}
     small_rigs.simulated(content, folder)
     drawn = {sweep["file"].removesuffix(".csv"): sweep["faults"] for sweep in content["sweep"]}
     return mffit.build(folder / "tyre.toml", folder / "out"), folder / "out", drawn
@@ -82,6 +83,7 @@ def test_the_noise_is_what_remains_and_the_uncertainties_contain_the_scatter(sca
     result, folder, _ = scattered
     fit, true = result.fit, small_rigs.truth()
     assert fit.channels["Fy"].rmse < 1.1 * small_rigs.FY < 1.5 * small_rigs.FY < fit.runs.alone["Fy"].rmse
+    assert fit.runs.alone.keys() == fit.channels.keys()
     assert not result.reasons
     for name in ("PDY1", "PDY2", "PKY1", "PPY4", "PPY3", "PKY2"):
         row = fit.coefficients[name]

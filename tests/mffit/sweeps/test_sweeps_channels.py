@@ -133,6 +133,13 @@ def test_a_name_that_tydex_export_writes_is_known_to_its_reader(written):
     assert np.isfinite(converted(np.ones(1), written.unit, channel.unit)).all()
 
 
+ONE = {
+    "tyre": {"name": "a", "unloaded_radius": 0.3, "nominal_load": 1400, "nominal_pressure": 250},
+    "rig": {"type": "flat-track"},
+    "sweep": [{"file": "a.csv"}],
+}
+
+
 def test_all_missing_columns_are_named_at_once_with_what_to_write(tmp_path):
     """What the sentence says to write makes the file readable."""
     headings = {
@@ -140,11 +147,7 @@ def test_all_missing_columns_are_named_at_once_with_what_to_write(tmp_path):
     }  # fmt: skip
     rows = "\n".join(f"{a};0;1,4;{-200 * a}" for a in range(-5, 6))
     (tmp_path / "a.csv").write_text(";".join(headings.values()) + f"\n{rows}\n", encoding="utf-8")
-    content = {
-        "tyre": {"name": "a", "unloaded_radius": 0.3, "nominal_load": 1400, "nominal_pressure": 250},
-        "rig": {"type": "flat-track"},
-        "sweep": [{"file": "a.csv"}],
-    }
+    content = dict(ONE)
     with pytest.raises(InputError) as caught:
         files.load(configuration.load(content, folder=tmp_path))
     said = str(caught.value)
@@ -155,3 +158,18 @@ def test_all_missing_columns_are_named_at_once_with_what_to_write(tmp_path):
     (sweep,) = files.load(configuration.load(content, folder=tmp_path)).sweeps
     assert sweep.Fz == pytest.approx(1400.0)
     assert np.degrees(sweep.alpha) == pytest.approx(np.arange(-5.0, 6.0))
+
+
+def test_a_unit_of_another_quantity_is_not_offered(tmp_path):
+    """A column in mm holds no side force; one whose unit is unknown may, in the unit that the channel has."""
+    for heading, offered in (
+        ("fy_path [mm]", ""),
+        ("fy_path [kN]", '{ column = "fy_path", unit = "kN" }'),
+        ("fy_path [raw]", '{ column = "fy_path [raw]", unit = "N" }'),
+    ):
+        (tmp_path / "a.csv").write_text(f"alpha_deg,gamma_deg,Fz_N,{heading}\n0,0,1400,1\n1,0,1400,2\n")
+        with pytest.raises(InputError) as caught:
+            files.load(configuration.load(ONE, folder=tmp_path))
+        said = str(caught.value)
+        assert (f"Fy_N = {offered}" if offered else "add Fy_N (") in said
+        assert "mm\"" not in said

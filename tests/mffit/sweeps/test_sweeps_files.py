@@ -217,7 +217,7 @@ def test_headings_units_and_signs_are_mapped(project):
     ("columns", "said"),
     [
         ({"Fy": "Fy_N"}, 'did you mean "Fy_N"'),
-        ({"Fy_N": "FY"}, 'no heading "FY"'),
+        ({"Fy_N": "FY"}, 'no heading "FY", which [sweep.columns] gives for Fy_N'),
         ({"Fy_N": {"unit": "kPa"}}, "cannot be converted to N"),
         ({"Fy_N": {"unit": "stone throws"}}, "is not a unit"),
     ],

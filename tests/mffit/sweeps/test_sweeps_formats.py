@@ -283,7 +283,7 @@ def test_a_file_may_lack_an_optional_column_of_the_shared_mapping(tmp_path):
     write_mat(TABLE.drop(columns="TSTC"), tmp_path / "run1.mat")
     assert np.all(np.isnan(sweeps.load(config(tmp_path)).sweeps[0].T))
     write_mat(TABLE.drop(columns="FY"), tmp_path / "run1.mat")
-    with pytest.raises(InputError, match='no heading "FY"'):
+    with pytest.raises(InputError, match=r'no heading "FY", which \[columns\] gives for Fy_N'):
         sweeps.load(config(tmp_path))
 
 
