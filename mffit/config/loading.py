@@ -173,19 +173,25 @@ def checked(
 
 @contextmanager
 def as_declared(config: Config) -> Iterator[None]:
-    """Within this block, errors about a column name its heading in the file and the unit declared for it."""
+    """Within this block, errors about a sweep name its file from here, its column by the file's heading and declared unit."""
     try:
         yield
     except InputError as error:
-        file, column = error.file, error.column
-        if file is None or column is None:
+        file, column, sentence = error.file, error.column, error.sentence
+        if file is None:
             raise
-        of_file = [entry.columns for entry in config.sweep if Path(entry.file).name == file.name]
-        declared = next((known[column] for known in (*of_file, config.columns) if column in known), None)
-        if declared is None:
-            raise
-        heading = declared.column or column
-        sentence = error.sentence.replace(f'column = "{column}"', f'column = "{heading}"')
-        if declared.unit is not None:
-            sentence += f"; {heading} is declared as {declared.unit}"
-        raise InputError(sentence, file=file, line=error.line, column=heading, key=error.key) from None
+        of_file = [entry for entry in config.sweep if Path(entry.file).name == file.name]
+        if any(Path(entry.file) == file for entry in of_file):
+            file = config.folder / file
+        known = [
+            columns[column]
+            for columns in (*(one.columns for one in of_file), config.columns)
+            if column in columns
+        ]
+        if column is not None and known:
+            heading = known[0].column or column
+            sentence = sentence.replace(f'column = "{column}"', f'column = "{heading}"')
+            if known[0].unit is not None:
+                sentence += f"; {heading} is declared as {known[0].unit}"
+            column = heading
+        raise InputError(sentence, file=file, line=error.line, column=column, key=error.key) from None

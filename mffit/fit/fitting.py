@@ -180,7 +180,10 @@ def _fitted_and_judged(
         fitted = refitted(found.full, here, tolerance=constants.REFIT_TOLERANCE)
         sigma = {name: weights.copy() for name, weights in found.full.problem.sigma.items()}
         for name, weights in sigma.items():
-            weights[without] = found.stated.sigma[name][without]
+            own, read = (one.sigma[name][without] for one in (found.stated, problem))
+            # Outliers are single readings; where most of a sweep are, the sweep itself is judged.
+            single = 2 * np.sum(np.isfinite(own)) >= np.sum(np.isfinite(read))
+            weights[without] = own if single else read
         return FittedModel(
             fitted.simulation, left_by(fitted, replace(found.full.problem, sigma=sigma), without, near=left)
         )

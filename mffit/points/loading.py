@@ -67,11 +67,12 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     Raises InputError if a file cannot be read, or no point is found and the result must not be empty (``may_be_empty``).
     """
     phi_t = {entry.file: path_curvature(config.rig, entry) for entry in config.sweep}
-    found, of_slip = _loaded(config, continuous)
-    series = list(zip(found.sweeps, _as_recorded(config, found.sweeps, continuous), strict=True))
-    scale = scale_of([settings_of(whole or one) for one, whole in series if one.is_series])
-    radius = config.tyre.unloaded_radius
-    reduced = [reduce(one, phi_t[one.file], scale, whole, radius) for one, whole in series]
+    with as_declared(config):
+        found, of_slip = _loaded(config, continuous)
+        series = list(zip(found.sweeps, _as_recorded(config, found.sweeps, continuous), strict=True))
+        scale = scale_of([settings_of(whole or one) for one, whole in series if one.is_series])
+        radius = config.tyre.unloaded_radius
+        reduced = [reduce(one, phi_t[one.file], scale, whole, radius) for one, whole in series]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
     if not (config.rig.on_disc or continuous):
         points = points.replace(continuous=False)
@@ -111,8 +112,7 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
 
 def _loaded(config: Config, continuous: bool) -> tuple[Sweeps, SlipRemarks]:
     """The sweeps as read, with even times on a common clock, without short gaps, and with slip against free rolling."""
-    with as_declared(config):
-        found = files.load(config)
+    found = files.load(config)
     timed = [evenly_timed(sweep) for sweep in found.sweeps]
     held = [bridged(sweep, ("p", "V", "T")) for sweep, _ in timed]  # often logged at a lower rate
     sweeps, of_slip = against_free_rolling(with_common_clock(held), config, with_errors=continuous)

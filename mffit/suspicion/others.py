@@ -6,6 +6,7 @@ therefore only names suspects. Each suspect is judged by a fit to the other swee
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -207,7 +208,8 @@ def _suspects(campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str,
     """Groups with significant prediction errors, clearly larger than the median group's; the worst first.
 
     Runs are assumed not to differ. Errors are computed both with and without the estimated model error, because the model error
-    can hide a fault that only one sweep shows.
+    can hide a fault that only one sweep shows. A sweep most of whose readings lost their weight as outliers is a suspect as well:
+    what is left of it may agree.
     """
     worst: dict[int, float] = {}
     points, channels = campaign.points, campaign.fitted.left.channels
@@ -225,6 +227,11 @@ def _suspects(campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str,
             for k, e in errors.items():
                 if e.chance < level and e.ratio > constants.DISTRUSTED_MISFIT * usual:
                     worst[k] = max(worst.get(k, 0.0), e.ratio / usual)
+        for k, g in enumerate(found):
+            if 2 * np.sum(np.isin(g.index, channel.rows)) < np.sum(
+                np.isfinite(points.channel(name)[g.index])
+            ):
+                worst[k] = math.inf
     in_order = sorted(worst, key=lambda k: (not found[k].whole, -worst[k]))
     return [found[k] for k in in_order[: constants.MOST_SUSPECTS]]
 

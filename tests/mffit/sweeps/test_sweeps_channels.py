@@ -172,4 +172,4 @@ def test_a_unit_of_another_quantity_is_not_offered(tmp_path):
             files.load(configuration.load(ONE, folder=tmp_path))
         said = str(caught.value)
         assert (f"Fy_N = {offered}" if offered else "add Fy_N (") in said
-        assert "mm\"" not in said
+        assert 'mm"' not in said
