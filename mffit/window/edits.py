@@ -79,23 +79,22 @@ def take_back(text: str, *, readings: Sequence[Mapping[str, Any]]) -> str:
     """The text with readings removed from ``[fit] exclude``; an entry without lines goes, and so does an empty list."""
 
     def change(document: Any) -> None:
-        entries = _exclude(document)
-        for file, ranges in _by_file(readings).items():
-            gone = []
-            for k, entry in enumerate(entries):
-                if entry["file"] == file:
-                    kept = _without(_ranges(entry), ranges)
-                    if not kept:
-                        gone.append(k)
-                    elif kept != list(_ranges(entry)):
-                        entry["lines"] = _lines(kept)
-            if len(gone) == len(entries):  # one by one, each deletion numbers all others anew
-                gone = []
-                entries.clear()
-            for k in reversed(gone):  # those before it keep their numbers
-                del entries[k]
-        if not entries:
+        entries, taken, gone = _exclude(document), _by_file(readings), set[int]()
+        for k, entry in enumerate(entries):
+            kept = _without(_ranges(entry), taken.get(entry["file"], ()))
+            if not kept:
+                gone.add(k)
+            elif kept != list(_ranges(entry)):
+                entry["lines"] = _lines(kept)
+        if len(gone) == len(entries):
             del document["fit"]["exclude"]
+        elif isinstance(entries, Array) and gone and "#" not in entries.as_string():
+            # Deleted one by one, every entry would number all others anew.
+            lines = [f"    {entry.as_string()},\n" for k, entry in enumerate(entries) if k not in gone]
+            document["fit"]["exclude"] = tomlkit.array(f"[\n{''.join(lines)}]")
+        else:
+            for k in sorted(gone, reverse=True):  # those before it keep their numbers
+                del entries[k]
 
     return _edited(text, change)
 

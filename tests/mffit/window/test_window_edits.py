@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import re
 import threading
 import time
 import tomllib
@@ -178,6 +179,8 @@ def test_every_other_of_many_entries_is_taken_back_and_the_comments_of_the_other
     ]
     assert all(f"# of {k}\n" in found for k in range(1, 400, 2))
     assert leave_out(found, readings=[reading("b.csv", 3)], why="again") == found
+    bare = take_back(re.sub("  # .*", "", text), readings=[{"file": "b.csv", "lines": gone}])
+    assert bare == re.sub("  # .*", "", found)  # without comments the list is written anew
 
 
 def test_readings_without_a_line_are_refused():
