@@ -21,7 +21,7 @@ from mffit.quantities import (
     QuantityName,
 )
 from mffit.rig_errors import shown, words_of
-from mffit.rounding import AtLeast, stated
+from mffit.rounding import AtLeast, number, stated
 from tir import Quantity
 from tir.errors import listed, some
 from tir.parameters import BY_NAME
@@ -63,7 +63,7 @@ def _curves(found: Comparison) -> str:
     if not any(gap.values()):
         return "The curves do not differ."
     named = {**SIDEWAYS, **{c: q for c, q in CHANNELS.items() if gap[c]}}
-    return f"The curves differ in {listed([f'{c} by up to {gap[c]:.3g} {q.unit} rms' for c, q in named.items()])}."
+    return f"The curves differ in {listed([f'{c} by up to {number(gap[c], digits=3)} {q.unit} rms' for c, q in named.items()])}."
 
 
 def _against_data(found: Comparison) -> list[str]:
@@ -73,7 +73,7 @@ def _against_data(found: Comparison) -> list[str]:
         rows = [gap for gap in found.sweeps if gap.channel == channel]
         if rows:
             total = math.sqrt(sum(gap.n * gap.rms**2 for gap in rows) / sum(gap.n for gap in rows))
-            parts.append(f"{total:.3g} {known.unit} rms in {channel}")
+            parts.append(f"{number(total, digits=3)} {known.unit} rms in {channel}")
     missed = f"{found.first} misses {found.second} by {listed(parts)}."
     return [missed] if found.by_rig is None else [missed, rig_or_tyre(found.by_rig, fitted=found.fitted)]
 
@@ -85,7 +85,7 @@ def rig_or_tyre(found: ExplainedByRig, *, fitted: bool) -> str:
     """
     if found.is_noise:
         return "That is noise: nothing is left to explain."
-    left = listed([f"{size:.3g} {CHANNELS[name].unit} in {name}" for name, size in found.left.items()])
+    left = listed([f"{number(size, digits=3)} {CHANNELS[name].unit} in {name}" for name, size in found.left.items()])
     named = listed([f"{words_of(name)} {_shown(name, one)}" for name, one in found.errors.items()])
     errors = f" ({named})" if named else ""
     if found.suffices:
@@ -133,7 +133,7 @@ def _significant(found: Comparison) -> str:
     largest = max(found.unequal or found.coefficients, key=lambda row: row.relative)
     return (
         f"The largest relative difference of {found.first} and {found.second} is that of {quantity(found, largest).word}, "
-        f"{100.0 * largest.relative:.3g} %."
+        f"{number(100.0 * largest.relative, digits=3)} %."
     )
 
 

@@ -27,6 +27,7 @@ from mffit.report.drawing.records import (
     listed,
 )
 from mffit.report.figures import fit
+from mffit.rounding import number
 
 FIRST, SECOND = (
     Look(colour=style.ACCENT, line="-", width=1.2),
@@ -49,7 +50,7 @@ def _panel(found: Comparison, gap: CurveGap) -> Panel:
         Trace(name=found.first, x=x, y=gap.first, half=gap.half_first, look=FIRST),
         Trace(name=found.second, x=x, y=gap.second, half=gap.half_second, look=SECOND),
     ]
-    title = f"{labels.LOAD.of(gap.load)}, apart by {gap.rms:.3g} {CHANNELS[gap.channel].unit} rms"
+    title = f"{labels.LOAD.of(gap.load)}, apart by {number(gap.rms, digits=3)} {CHANNELS[gap.channel].unit} rms"
     return labels.over_angle(gap.over, gap.channel, title, series)
 
 
