@@ -85,7 +85,9 @@ def rig_or_tyre(found: ExplainedByRig, *, fitted: bool) -> str:
     """
     if found.is_noise:
         return "That is noise: nothing is left to explain."
-    left = listed([f"{number(size, digits=3)} {CHANNELS[name].unit} in {name}" for name, size in found.left.items()])
+    left = listed(
+        [f"{number(size, digits=3)} {CHANNELS[name].unit} in {name}" for name, size in found.left.items()]
+    )
     named = listed([f"{words_of(name)} {_shown(name, one)}" for name, one in found.errors.items()])
     errors = f" ({named})" if named else ""
     if found.suffices:

@@ -50,7 +50,9 @@ def _panel(found: Comparison, gap: CurveGap) -> Panel:
         Trace(name=found.first, x=x, y=gap.first, half=gap.half_first, look=FIRST),
         Trace(name=found.second, x=x, y=gap.second, half=gap.half_second, look=SECOND),
     ]
-    title = f"{labels.LOAD.of(gap.load)}, apart by {number(gap.rms, digits=3)} {CHANNELS[gap.channel].unit} rms"
+    title = (
+        f"{labels.LOAD.of(gap.load)}, apart by {number(gap.rms, digits=3)} {CHANNELS[gap.channel].unit} rms"
+    )
     return labels.over_angle(gap.over, gap.channel, title, series)
 
 

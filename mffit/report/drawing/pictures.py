@@ -209,6 +209,11 @@ def _draw_axis(axes: Axes, name: str, axis: Axis, words: Sequence[str]) -> None:
     places = np.array([*axis.words] if axis.words is not None else own.get_majorticklocs())
     shown = (places >= min(low, high)) & (places <= max(low, high))
     labels = words if axis.words is not None else own.get_major_formatter().format_ticks(places.tolist())
+    if name == "x" and axis.words is None:
+        labels = [
+            "" if _runs_out(axes, place, label) else label
+            for place, label in zip(places, labels, strict=True)
+        ]
     along = axes.get_xaxis_text1_transform if name == "x" else axes.get_yaxis_text1_transform
     transform, up, side = along(NUMBER_OFF)
     for place, label in zip(places[shown], np.array(labels, dtype=object)[shown], strict=True):
@@ -219,6 +224,13 @@ def _draw_axis(axes: Axes, name: str, axis: Axis, words: Sequence[str]) -> None:
         x, y = across[::-1] if name == "x" else across
         grid = axes.get_xaxis_transform("grid") if name == "x" else axes.get_yaxis_transform("grid")
         axes.add_artist(Line2D(x, y, transform=grid, zorder=0.5, color=style.GRID, linewidth=0.7))
+
+
+def _runs_out(axes: Axes, place: float, label: str) -> bool:
+    """Whether the number at a place of the horizontal axis ends beyond the margin of its panel, where it is cut."""
+    share = axes.transLimits.transform(axes.transScale.transform((place, axes.get_ylim()[0])))[0]
+    left = (1.0 - share) * axes.get_position().width * style.WIDTH + style.RIGHT
+    return bool(0.5 * style.LETTER * len(label) > left)
 
 
 def _space_out(axes: Axes) -> None:
