@@ -11,7 +11,7 @@ from mffit.fit import constants
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.problem import FitProblem
 from mffit.fit.stages import is_asymmetry
-from mffit.fit.told import Priors, numbers_told, told_by_sweeps
+from mffit.fit.told import Priors, numbers_told, told_by_curves
 from mffit.least_squares import FreeNumber, solve
 from mffit.linearised import LinearisedFit, Uncertain, linearised
 from mffit.numbers import Numbers
@@ -130,7 +130,7 @@ def priors_of(fitted: Fitted) -> Priors:
 def with_errors_of(fitted: Fitted, left: LinearisedFit) -> Fitted:
     """The fit with the uncertainty that repeated campaigns would show, from the linear model ``left`` of its residuals."""
     priors = priors_of(fitted)
-    told = told_by_sweeps(fitted.problem, left, priors.names)
+    told = told_by_curves(fitted.problem, left, priors.names)
     free = numbers_told(told, priors)
     fixed = {name: free.stderr[name] for name in fitted.at_own_bound}
     posterior = free.given(fixed)

@@ -1,4 +1,4 @@
-"""Information of each sweep about the numbers of a fit, and the uncertainty for a campaign that is run again."""
+"""Information of each curve about the numbers of a fit, and the uncertainty for a campaign that is run again."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ from mffit.least_squares import FreeNumber, inverse
 from mffit.linearised import LinearisedFit
 from mffit.numbers import Numbers
 from mffit.points import Points
+from mffit.points.like import curves as curves_of
 
 ROUNDING = 1e-12
 """Rounding error of a scaled information matrix, which can become singular by it."""
 
 
 class Told(NamedTuple):
-    """Information of the readings of one sweep about numbers (k,), with the weights of the fit."""
+    """Information of the readings of one curve about numbers (k,), with the weights of the fit."""
 
     information: np.ndarray  #: (k, k) derivative of the score
     scatter: np.ndarray  #: (k, k) covariance of the score, from noise and from what the run has of its own
@@ -38,12 +39,13 @@ class Told(NamedTuple):
         )
 
 
-def told_by_sweeps(problem: FitProblem, left: LinearisedFit, names: Sequence[str]) -> list[Told]:
-    """What every sweep tells of the named numbers at the values of ``problem``, and at last what the measured radii tell.
+def told_by_curves(problem: FitProblem, left: LinearisedFit, names: Sequence[str]) -> list[Told]:
+    """What every curve tells of the named numbers at the values of ``problem``, and at last what the measured radii tell.
 
     ``left`` is the linear model of what the fit leaves.
     """
     found: dict[int, Told] = {}
+    curve = curves_of(problem.points)
     for name, channel in left.channels.items():
         part = problem.points.select(channel.rows, with_table=False)
         weight = 1.0 / problem.sigma[name][channel.rows]  # 0 for a reading that the fit left out
@@ -54,9 +56,12 @@ def told_by_sweeps(problem: FitProblem, left: LinearisedFit, names: Sequence[str
             missed=channel.missed_at_readings * weight,
             residual=channel.model.residual * channel.unit * weight,
         )
-        for sweep in np.unique(part.sweep).tolist():
-            told = seen.told(part.sweep == sweep, channel.stride)
-            found[sweep] = found[sweep] + told if sweep in found else told
+        of = curve[channel.rows]
+        for sweep in np.unique(part.sweep):
+            run = np.flatnonzero(part.sweep == sweep)
+            for one in np.unique(of[run]).tolist():
+                told = seen.told(run[of[run] == one], channel.stride, run)
+                found[one] = found[one] + told if one in found else told
     residual, by_radii = problem.radii_rows(names)
     of_radii = by_radii.T @ by_radii
     return [*found.values(), Told(of_radii, of_radii, np.zeros(len(names)), -by_radii.T @ residual)]
@@ -86,7 +91,7 @@ def told_by_run(
         else:
             missed, own = channel.foreseen(run, force[name])
             seen = _Readings(slopes, np.full(n, channel.noise / u), own / u, missed / u, np.zeros(n))
-        out = out + seen.told(np.arange(n), 1)
+        out = out + seen.told(np.arange(n), 1, np.arange(n))
     return out
 
 
@@ -119,13 +124,17 @@ class _Readings(NamedTuple):
     missed: np.ndarray  #: (n,) model error
     residual: np.ndarray  #: (n,) measured less model
 
-    def told(self, rows: np.ndarray, stride: int) -> Told:
-        """Information of some of the readings, each of which represents ``stride`` readings."""
+    def told(self, rows: np.ndarray, stride: int, run: np.ndarray) -> Told:
+        """Information of some ``rows`` of a ``run``, each of which represents ``stride`` readings.
+
+        The scatter by what the run has of its own is the share of these rows: all shares add up to that of the run.
+        """
         slopes = self.slopes[rows]
         noisy, own = slopes * self.noise[rows, None], stride * slopes.T @ self.own[rows]
+        share = own @ (stride * self.slopes[run].T @ self.own[run]).T
         return Told(
             information=stride * (slopes.T @ slopes),
-            scatter=stride * (noisy.T @ noisy) + own @ own.T,
+            scatter=stride * (noisy.T @ noisy) + 0.5 * (share + share.T),
             missed=stride * slopes.T @ self.missed[rows],
             pull=stride * slopes.T @ self.residual[rows],
         )
@@ -157,51 +166,68 @@ class Priors(NamedTuple):
 
 
 def numbers_told(told: Sequence[Told], priors: Priors) -> Numbers:
-    """The numbers with the information of all sweeps, so that their covariance is that of repeated campaigns.
+    """The numbers with the information of all curves, so that their covariance is that of repeated campaigns.
 
     A fit gives every reading the weight of independent noise. Its estimate therefore moves, from campaign to campaign, by noise
-    and by what runs have of their own, as modelled, and by the model error: the conditions of other sweeps in the same ranges
-    would pull it elsewhere around the best that the formula can do. How far, the pulls of the present sweeps tell, each sweep
+    and by what runs have of their own, as modelled, and by the model error: the conditions of other curves in the same ranges
+    would pull it elsewhere around the best that the formula can do. How far, the pulls of the present curves tell, each curve
     left out in turn (the jackknife over clusters, to first order). Together, with H the curvature of the fit and D the
-    covariance by the jackknife: C = H^-1 (scatter + priors) H^-1 + D. The information returned is C^-1 without the priors, which
-    held numbers do not have here; where C exceeds a prior, the readings have no information.
+    covariance by the jackknife: C = H^-1 (scatter + priors) H^-1 + D. An error of a held number moves the others as in the fit,
+    by -H_ff^-1 H_fh. The information returned has these covariances and moves, and of the held numbers what they would have if
+    all were free; it is without the priors. Where C exceeds a prior, the readings have no information.
     """
-    held = np.array([name in priors.held for name in priors.names], dtype=bool)
-    precision = np.where(held, np.inf, priors.spread) ** -2.0
-    curvature = sum((one.information for one in told), np.diag(precision))
-    scatter = sum((one.scatter for one in told), np.diag(precision))
-    scatter = scatter + _by_model_error(told, curvature)
+    rows = range(len(priors.names))
+    held = [i for i in rows if priors.names[i] in priors.held]
+    free = [i for i in rows if i not in held]
+    precision = np.array([0.0 if i in held else priors.spread[i] ** -2.0 for i in rows])
+    score = precision * (priors.values - priors.expected)
+    curvature, covariance = _repeated([one.only(free) for one in told], precision[free])
     scale = np.sqrt(np.maximum(np.diag(curvature), 1e-24))
     unit = np.outer(scale, scale)
-    precise = curvature / unit @ inverse(scatter / unit) @ (curvature / unit) - np.diag(precision / scale**2)
+    precise = inverse(covariance * unit) - np.diag(precision[free] / scale**2)
     size, axes = np.linalg.eigh(0.5 * (precise + precise.T))
-    information = (axes * np.maximum(size, 0.0)) @ axes.T * unit
-    score = precision * (priors.values - priors.expected)
-    # The free numbers are at their best; the held ones would move the estimate as far as in the fit with its weights.
-    pull = sum((one.pull for one in told), -score)[held]
-    moved = inverse(curvature)[np.ix_(held, held)] @ pull
-    score[held] = inverse(inverse(information + np.diag(precision))[np.ix_(held, held)]) @ moved
+    known = (axes * np.maximum(size, 0.0)) @ axes.T * unit
+    information = np.zeros((len(rows), len(rows)))
+    information[np.ix_(free, free)] = known
+    if held:
+        every, of_all = _repeated(told, precision)
+        moves = inverse(curvature) @ every[np.ix_(free, held)]
+        across = (known + np.diag(precision[free])) @ moves
+        of_held = inverse(of_all[np.ix_(held, held)])
+        information[np.ix_(free, held)], information[np.ix_(held, free)] = across, across.T
+        information[np.ix_(held, held)] = of_held + moves.T @ across
+        # The free numbers are at their best; the held ones would move as far as in the fit with its weights.
+        pull = sum((one.pull for one in told), -score)[held]
+        score[held] = of_held @ inverse(every)[np.ix_(held, held)] @ pull
     return Numbers(
         priors.names, priors.values, information, score, priors.expected, priors.spread, priors.held
     )
 
 
-def _by_model_error(told: Sequence[Told], curvature: np.ndarray) -> np.ndarray:
-    """Covariance (k, k) of the score by the model error, from the change of the estimate without each sweep.
+def _repeated(told: Sequence[Told], precision: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Curvature (k, k) of a fit with priors of this ``precision`` (k,), and covariance (k, k) of its estimate."""
+    curvature = sum((one.information for one in told), np.diag(precision))
+    scatter = sum((one.scatter for one in told), np.diag(precision)) + _by_model_error(told, curvature)
+    back = inverse(curvature)
+    return curvature, back @ scatter @ back
 
-    A sweep is left out but for one part in their number, so that what it alone tells stays told.
+
+def _by_model_error(told: Sequence[Told], curvature: np.ndarray) -> np.ndarray:
+    """Covariance (k, k) of the score by the model error, from the change of the estimate without each curve.
+
+    A curve is left out but for one part in their number, so that what it alone tells stays told.
     """
-    sweeps = [one for one in told if np.any(one.missed)]
-    if len(sweeps) < 2:
+    curves = [one for one in told if np.any(one.missed)]
+    if len(curves) < 2:
         return np.zeros_like(curvature)
-    share = 1.0 - 1.0 / len(sweeps)
+    share = 1.0 - 1.0 / len(curves)
     seen = np.diag(curvature) > 0.0
     scale = np.sqrt(np.diag(curvature)[seen])
     whole = curvature[np.ix_(seen, seen)] / np.outer(scale, scale)
-    informed = [one.information[np.ix_(seen, seen)] / np.outer(scale, scale) for one in sweeps]
+    informed = [one.information[np.ix_(seen, seen)] / np.outer(scale, scale) for one in curves]
     without = whole + ROUNDING * np.eye(len(scale)) - share * np.array(informed)
-    missed = np.array([one.missed[seen] / scale for one in sweeps])
+    missed = np.array([one.missed[seen] / scale for one in curves])
     moves = np.linalg.solve(without, missed[:, :, None])[:, :, 0]
-    pulls = np.zeros((len(sweeps), len(curvature)))
+    pulls = np.zeros((len(curves), len(curvature)))
     pulls[:, seen] = (moves - moves.mean(axis=0)) @ whole * scale
     return np.asarray(share * pulls.T @ pulls)

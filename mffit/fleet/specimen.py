@@ -121,13 +121,13 @@ class Specimen:
 def freed(numbers: Numbers) -> Numbers | None:
     """The numbers of a build, also the coefficients that it held; None if its readings contain no information.
 
-    A held number of the rig, or one of which they tell nothing, is left out. Effects of the tyre that are not coefficients
-    are left to readings and priors, as they are estimated anew in every build.
+    A held number of which they tell nothing is left out. Effects of the tyre that are not coefficients are left to readings and
+    priors, as they are estimated anew in every build.
     """
     silent = {
         name
         for i, name in enumerate(numbers.names)
-        if name in numbers.held and (error_of(name) or not numbers.information[i, i] > 0.0)
+        if name in numbers.held and not numbers.information[i, i] > 0.0
     }
     known = numbers.given(silent)
     if not known.names:

@@ -17,7 +17,7 @@ from mffit.fit.fitted import left_by, priors_of
 from mffit.fit.priors import scatter
 from mffit.fit.ranges import tested_ranges
 from mffit.fit.rig.rig_numbers import rig_numbers
-from mffit.fit.told import Priors, Told, numbers_told, told_by_run, told_by_sweeps
+from mffit.fit.told import Priors, Told, numbers_told, told_by_curves, told_by_run
 from mffit.measured import Measured, unspun
 from mffit.numbers import Numbers
 from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, ROAD, Goal
@@ -101,7 +101,7 @@ class Prospect:
         if self._unseen:  # the noise of Fx is unknown and assumed equal to that of Fy
             self._sigma = {"Fx": self._sigma["Fy"], **self._sigma}
         self._left, self._at_bound = found.left_by_file or left_by(search), search.at_own_bound
-        self._told = told_by_sweeps(self.problem, self._left, self.names)
+        self._told = told_by_curves(self.problem, self._left, self.names)
         self._of_run: dict[str, Told] = {}
         self._direct = DirectProspect(
             points,

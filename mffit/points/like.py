@@ -1,4 +1,4 @@
-"""Mean side forces at like conditions, by which sweeps and files are compared."""
+"""Points under like conditions: curves, and mean side forces, by which sweeps and files are compared."""
 
 from __future__ import annotations
 
@@ -12,6 +12,11 @@ from mffit.points import levels
 from mffit.points.noise import neighbour_noise, stating
 from mffit.points.points import Points
 from mffit.scatter import rms
+
+HELD = (("Fz", levels.LOAD), ("p", levels.PRESSURE))
+"""Settings that no curve goes over."""
+VARIED = (("alpha", levels.SIDESLIP), ("gamma", levels.CAMBER), ("kappa", levels.SLIP))
+"""Quantities of which a curve goes over one."""
 
 
 class MeanReading(NamedTuple):
@@ -49,6 +54,28 @@ def conditions(points: Points, settings: Sequence[tuple[str, levels.LevelKind]])
             np.round(points.alpha / STRAIGHT.rad).astype(int),
         ]
     )
+
+
+def curves(points: Points) -> np.ndarray:
+    """Index (n,) of the curve of each point: points of one sweep, which may be a whole file, that differ in one quantity only.
+
+    It is that of sideslip, camber and longitudinal slip with the most levels at a load, pressure and path; the others are held.
+    """
+    held = [levels.labels_of_setting(getattr(points, name), points.sweep, kind) for name, kind in HELD]
+    at = [
+        points.sweep,
+        *held,
+        points.direction,
+        points.mount,
+        np.unique(points.phi_t, return_inverse=True)[1],
+    ]
+    out, known = np.zeros(len(points), dtype=int), 0
+    for rows in levels.rows_of_equal(np.column_stack(at)):
+        found = [levels.nearest_labels(getattr(points, name)[rows], kind) for name, kind in VARIED]
+        found.pop(int(np.argmax([len(np.unique(own)) for own in found])))
+        for own in levels.rows_of_equal(np.column_stack(found)):
+            out[rows[own]], known = known, known + 1
+    return out
 
 
 def mean_readings(points: Points, rows: np.ndarray, keys: np.ndarray, u: np.ndarray) -> MeanReadings:

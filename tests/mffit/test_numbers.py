@@ -146,3 +146,23 @@ def test_the_score_of_a_held_number_says_what_the_readings_would_make_of_it(scat
     freed = replace(numbers, held=frozenset(), spread=np.full(2, math.inf))
     best = freed.values + np.linalg.solve(freed.information, freed.score)
     assert best == pytest.approx(truth, rel=1e-6)
+
+
+def test_an_error_of_a_held_number_moves_the_others_as_the_weights_of_the_fit_do():
+    """The weights of a fit are those of independent noise, whatever scatter its readings turn out to have."""
+    random = np.random.default_rng(3)
+    sweeps = [random.standard_normal((12, 3)) for _ in range(6)]
+    told = []
+    for slopes in sweeps:
+        own = slopes.sum(axis=0)  # of an offset of the run
+        missed = slopes.T @ random.standard_normal(12)
+        told.append(Told(slopes.T @ slopes, slopes.T @ slopes + 9.0 * np.outer(own, own), missed, missed))
+    priors = Priors(
+        ("a", "b", "held"), np.zeros(3), np.zeros(3), np.array([math.inf, math.inf, 0.1]), frozenset(["held"])
+    )
+    slopes = np.concatenate(sweeps)
+    refitted, *_ = np.linalg.lstsq(
+        slopes[:, :2], -0.1 * slopes[:, 2], rcond=None
+    )  # the held number is off by 0.1
+    moved = numbers_told(told, priors).moved_by()["held"]
+    assert moved == pytest.approx([*refitted, 0.1])
