@@ -60,6 +60,7 @@ def curves(points: Points) -> np.ndarray:
     """Index (n,) of the curve of each point: points of one sweep, which may be a whole file, that differ in one quantity only.
 
     It is that of sideslip, camber and longitudinal slip with the most levels at a load, pressure and path; the others are held.
+    A curve and its mirror image are one.
     """
     held = [levels.labels_of_setting(getattr(points, name), points.sweep, kind) for name, kind in HELD]
     at = [
@@ -71,7 +72,7 @@ def curves(points: Points) -> np.ndarray:
     ]
     out, known = np.zeros(len(points), dtype=int), 0
     for rows in levels.rows_of_equal(np.column_stack(at)):
-        found = [levels.nearest_labels(getattr(points, name)[rows], kind) for name, kind in VARIED]
+        found = [levels.nearest_labels(np.abs(getattr(points, name)[rows]), kind) for name, kind in VARIED]
         found.pop(int(np.argmax([len(np.unique(own)) for own in found])))
         for own in levels.rows_of_equal(np.column_stack(found)):
             out[rows[own]], known = known, known + 1

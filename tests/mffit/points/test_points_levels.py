@@ -216,13 +216,15 @@ def test_the_middle_of_a_level_is_that_of_most_of_its_points():
 
 
 def test_curves_are_told_apart_in_one_file_as_in_several():
-    """Sideslip at two loads and three cambers, camber at one load: seven curves, whichever files hold them."""
+    """Sideslip at two loads and camber 0, 10, -10 and 20 deg, camber at one load: seven curves, whichever files hold them."""
     slip, lean = np.radians([-6.0, -3.0, 0.0, 3.0, 6.0]), np.radians([-4.0, -2.0, 1.0, 2.0, 4.0])
-    rows = [(a, g, Fz, 0) for Fz in (1000.0, 2000.0) for g in np.radians([0.0, 10.0, 20.0]) for a in slip]
+    rows = [
+        (a, g, Fz, 0) for Fz in (1000.0, 2000.0) for g in np.radians([0.0, 10.0, -10.0, 20.0]) for a in slip
+    ]
     rows += [(np.radians(12.0), g, 3000.0, 1) for g in lean]
     alpha, gamma, Fz, sweep = (np.array(column) for column in zip(*rows, strict=True))
     for files in (sweep, 0 * sweep):
         points = make_points(alpha, gamma, Fz, p=250e3, V=6.0, phi_t=0.0, sweep=files, sweep_names=("a", "b"))
         found = curves(points)
-        assert [len(np.unique(found[i : i + 5])) for i in range(0, 35, 5)] == 7 * [1]
+        assert [len(np.unique(found[i : i + 5])) for i in range(0, 45, 5)] == 9 * [1]
         assert len(np.unique(found)) == 7
