@@ -22,7 +22,6 @@ from mffit.least_squares import POLISH_TOLERANCE, FreeNumber, solve
 from mffit.linearised import LinearisedFit
 from mffit.points import Points
 from mffit.quantities import CHANNELS, column
-from mffit.rig_errors import BY_NAME as BY_ERROR
 from mffit.rig_errors import error_of
 from tir.parameters import BY_NAME
 
@@ -109,7 +108,7 @@ def _fitted(
     problem = problem.with_values(solution.values)
     posterior = told_by_weights(problem, numbers, {**given.held, **given.held_rig})
     known = {name: problem.value(name) for name in given.held_rig}
-    absent = [name for name, value in known.items() if value == BY_ERROR[name].undisturbed]
+    absent = [name for name, value in known.items() if (e := error_of(name)) and value == e.undisturbed]
     stderr, share = posterior.stderr, constants.FITTED_SHARE_OF_PRIOR
     return Fitted(
         values={name: v for name, v in solution.values.items() if error_of(name) is None},
