@@ -118,7 +118,7 @@ def compare(first: Path, second: Path, out: Path | None, voice: Voice, **asked: 
 @tyre_toml
 @click.option(
     "--goal",
-    help="What to make more certain: eps_gamma, eps_gamma:joint, bands, bands:Mz, or file "
+    help="What to make more certain: eps_gamma, eps_gamma:joint, bands, bands:Mz, file or road "
     "[default: the source of PECP1].",
 )
 @click.option("--coefficient", metavar="NAME", help="Make this coefficient more certain instead.")

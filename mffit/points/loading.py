@@ -67,15 +67,14 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     Raises InputError if a file cannot be read, or no point is found and the result must not be empty (``may_be_empty``).
     """
     phi_t = {entry.file: path_curvature(config.rig, entry) for entry in config.sweep}
+    radius = config.tyre.unloaded_radius
     with as_declared(config):
         found, of_slip = _loaded(config, continuous)
         series = list(zip(found.sweeps, _as_recorded(config, found.sweeps, continuous), strict=True))
         scale = scale_of([settings_of(whole or one) for one, whole in series if one.is_series])
-        radius = config.tyre.unloaded_radius
         reduced = [reduce(one, phi_t[one.file], scale, whole, radius) for one, whole in series]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
-    if not (config.rig.on_disc or continuous):
-        points = points.replace(continuous=False)
+    points = points if config.rig.on_disc or continuous else points.replace(continuous=False)
     steady = points.select(~points.continuous) if config.rig.on_disc else points
     if not len(steady) and not may_be_empty:
         raise InputError(_nothing(reduced), file=config.path)
@@ -101,7 +100,7 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
             *moving,
         ),
         excluded=_excluded(found.of_excluded, phi_t),
-        steps=steps(found.sweeps, phi_t, config.tyre.unloaded_radius, scale),
+        steps=steps(found.sweeps, phi_t, radius, scale),
         notes=of_slip.notes,
         taken_off=tuple(dict.fromkeys(said for _, said in of_slip.taken_off.values())),
         as_read=_slip_as_read(kept, of_slip.taken_off),

@@ -109,6 +109,14 @@ def test_units_that_a_file_does_not_state_are_marked_as_assumed(tmp_path):
     assert content["tyre"]["nominal_pressure"] == pytest.approx(83, abs=1)
 
 
+def test_recordings_whose_names_differ_by_a_sign_have_a_picture_each(tmp_path):
+    files = [tmp_path / "run_+4.csv", tmp_path / "run_-4.csv"]
+    for file in files:
+        recording(cambers=CAMBERS[:1], pressures=(83.0,)).to_csv(file, index=False)
+    _, written = pipeline.init_from(files, tmp_path / "project", **GIVEN)
+    assert sorted(path.name for path in written if path.suffix == ".png") == ["run_-4-1.png", "run_-4-2.png"]
+
+
 def test_from_the_recording_to_the_property_file(tmp_path, capsys):
     """The tyre's own curve, which lags and scatters in the recording, to 3 % of the load."""
     machine = write_mat(
