@@ -41,7 +41,7 @@ export function showChosen() {
   const named = Object.keys(project.quantities).filter(name => columns[name] &&
     shown.some(i => Number.isFinite(columns[name][i]) && columns[name][i] !== 0));
   const about = [
-    ...channels.map(name => [label(RESIDUAL + name), i => written(columns[name][i] - own[name][i])]),
+    ...channels.map(name => [label(RESIDUAL + name), i => written(shownIn(name, columns[name][i] - own[name][i]))]),
     ...named.filter(name => chosen.length === 1 || axisKnown(name)).map(name =>
       [label(name), i => trimmed(written(shownIn(name, (columns.read[name] || columns[name])[i])))]),
     ...(shown.some(i => left[i]) ? [["left out", i => left[i] ? whyLeftOut(i) || "yes" : ""]] : []),

@@ -5,7 +5,7 @@ import {RESIDUAL, bandOf, crosses, extent, fixedCurve, placed, pointsOf} from ".
 import {canvasOf} from "./dom.js";
 import {
   MOST_MOVED, beforeModels, changed, channels, columns, facet, fitModels, isMoved, left, misfit, misfits, models,
-  project, quantity, state, version, visible,
+  project, quantity, shownIn, state, version, visible,
 } from "./model.js";
 import {dragging} from "./pictures.js";
 import {named, written} from "./text.js";
@@ -79,7 +79,7 @@ export function drawAbove(pen, panel, place) {
   if (channels.includes(y)) {
     const {rmse, over_noise, about} = misfits[y] ??= misfit(y);
     const noise = Number.isFinite(over_noise) ? `, ${over_noise.toFixed(2)} × noise` : "";
-    said.push(`misfit ${about ? "≈ " : ""}${written(rmse)} ${quantity(y).unit}${noise}`);
+    said.push(`misfit ${about ? "≈ " : ""}${written(shownIn(y, rmse))} ${quantity(y).unit}${noise}`);
   }
   if (drawn < of) said.push(`drawn ${drawn} of ${of}`);
   over(pen, said.join("; "), place.width - RIGHT - 2, TOP - 7, theme.muted);

@@ -6,7 +6,7 @@ import {byId, element, key, tell} from "./dom.js";
 import {listFacets, showFacets} from "./filters.js";
 import {
   axisKnown, channels, columns, filter, fitMisfits, fitOwn, hooks, left, misfit, misfits, project, quantity, recompute,
-  setTrial, state, take, trial, useOf, visible,
+  setTrial, shownIn, state, take, trial, useOf, visible,
 } from "./model.js";
 import {
   addPanel, begin, dragging, frame, look, panels, recalled, remember, removePanel, retheme, update,
@@ -26,9 +26,10 @@ function showMisfit() {
     if (!line.cells.length) for (let i = 0; i < 5; i++) line.insertCell().className = i ? "n" : "";
     if (line.dataset.name !== name) line.cells[0].replaceChildren(symbol(quantity(name)), ` [${unit(name)}]`);
     line.dataset.name = name;
-    const before = project.before && name in project.before.rmse ? written(project.before.rmse[name]) : "";
+    const size = rmse => written(shownIn(name, rmse));
+    const before = project.before && name in project.before.rmse ? size(project.before.rmse[name]) : "";
     const ratio = Number.isFinite(now.over_noise) ? now.over_noise.toFixed(2) : "–";
-    [`${now.about ? "≈ " : ""}${written(now.rmse)}`, written(fit.rmse), before,
+    [`${now.about ? "≈ " : ""}${size(now.rmse)}`, size(fit.rmse), before,
       ratio].forEach((text, i) => tell(line.cells[i + 1], text));
     line.cells[3].hidden = !project.before;
     line.cells[4].hidden = !noisy;
@@ -114,7 +115,7 @@ export async function showProject(data) {
   if (!panels.length) for (const panel of (wanted.length ? wanted : defaultPanels())) addPanel(panel);
   listCoefficients();
   const fit = project.channels.filter(one => one.of_fit).map(one =>
-    `${one.name} ${written(one.rmse)} ${quantity(one.name).unit}`).join(", ");
+    `${one.name} ${written(shownIn(one.name, one.rmse))} ${quantity(one.name).unit}`).join(", ");
   byId("content").classList.toggle("before", !channels.length);
   byId("verdict").textContent = project.verdict;
   byId("verdict").className = project.judgement;
