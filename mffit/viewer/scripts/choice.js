@@ -1,10 +1,10 @@
 // Points that are pointed at and chosen, in a picture or by keys, and the list of what was read at them.
 import {RESIDUAL, inOrder, within} from "./curves.js";
 import {byId, element, key, showTip} from "./dom.js";
-import {axisKnown, channels, columns, hooks, left, own, project, shownIn, whyLeftOut} from "./model.js";
+import {axisKnown, channels, columns, hooks, left, own, project, quantity, shownIn, whyLeftOut} from "./model.js";
 import {tool, update} from "./pictures.js";
 import {MOST_LISTED, chosen, isChosen, label, nearest, pointed, setChosen, setPointed} from "./points.js";
-import {labelled, trimmed, written} from "./text.js";
+import {labelled, symbol, trimmed, unitOf, written} from "./text.js";
 
 function tip(panel, i) {
   panel.tip.hidden = i < 0;
@@ -38,16 +38,18 @@ export function showChosen() {
   if (!chosen.length) return;
   const shown = chosen.slice(0, MOST_LISTED), body = byId("chosen-table").tBodies[0];
   const row = cells => element("tr", "", cells), cell = text => element("td", "n", text);
+  const short = (name, before = "") => [before, symbol(quantity(name)), " ", element("br"), unitOf(quantity(name))];
   const named = Object.keys(project.quantities).filter(name => columns[name] &&
     shown.some(i => Number.isFinite(columns[name][i]) && columns[name][i] !== 0));
   const about = [
-    ...channels.map(name => [label(RESIDUAL + name), i => written(shownIn(name, columns[name][i] - own[name][i]))]),
+    ...channels.map(name => [label(RESIDUAL + name), i => written(shownIn(name, columns[name][i] - own[name][i])),
+      short(name, "residual ")]),
     ...named.filter(name => chosen.length === 1 || axisKnown(name)).map(name =>
-      [label(name), i => trimmed(written(shownIn(name, (columns.read[name] || columns[name])[i])))]),
-    ...(shown.some(i => left[i]) ? [["left out", i => left[i] ? whyLeftOut(i) || "yes" : ""]] : []),
+      [label(name), i => trimmed(written(shownIn(name, (columns.read[name] || columns[name])[i]))), short(name)]),
+    ...(shown.some(i => left[i]) ? [["left out", i => left[i] ? whyLeftOut(i) || "yes" : "", "left out"]] : []),
   ];
   byId("chosen-table").tHead.replaceChildren(...chosen.length === 1 ? [] : [row([element("th", "", "point"),
-    ...about.map(([title]) => element("th", "n", title)), element("th")])]);
+    ...about.map(([title, , head]) => element("th", "n", head, {title})), element("th")])]);
   if (chosen.length === 1) {
     body.replaceChildren(...about.map(([title, text]) => row([element("th", "", title), cell(text(chosen[0]))])));
   } else {
