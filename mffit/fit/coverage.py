@@ -110,10 +110,10 @@ def side_run(points: Points) -> bool:
 
 
 UNSEEN = (
-    "the formula misses these readings, and one side of a disc does not tell an asymmetry from what it misses of turn slip: run "
-    "the other side of the disc, or the tyre turned on its rim"
+    "the formula misses these readings, and they do not tell an asymmetry from what it misses of turn slip: run more of the "
+    "other side of the disc, or the tyre turned on its rim"
 )
-"""Why the asymmetries of a tyre are held that a disc shows from one side only."""
+"""Why asymmetries of a tyre are held of which a disc shows nothing beside the model error."""
 
 
 def _straight_on(points: Points) -> np.ndarray:

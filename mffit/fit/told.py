@@ -181,19 +181,19 @@ def numbers_told(told: Sequence[Told], priors: Priors) -> Numbers:
     free = [i for i in rows if i not in held]
     precision = np.array([0.0 if i in held else priors.spread[i] ** -2.0 for i in rows])
     score = precision * (priors.values - priors.expected)
-    curvature, covariance = _repeated([one.only(free) for one in told], precision[free])
-    scale = np.sqrt(np.maximum(np.diag(curvature), 1e-24))
-    unit = np.outer(scale, scale)
-    precise = inverse(covariance * unit) - np.diag(precision[free] / scale**2)
-    size, axes = np.linalg.eigh(0.5 * (precise + precise.T))
-    known = (axes * np.maximum(size, 0.0)) @ axes.T * unit
+    curvature, precise = _repeated([one.only(free) for one in told], precision[free])
+    own = _positive(precise - np.diag(precision[free]), np.diag(curvature))
     information = np.zeros((len(rows), len(rows)))
-    information[np.ix_(free, free)] = known
+    information[np.ix_(free, free)] = own
     if held:
         every, of_all = _repeated(told, precision)
         moves = inverse(curvature) @ every[np.ix_(free, held)]
-        across = (known + np.diag(precision[free])) @ moves
-        of_held = inverse(of_all[np.ix_(held, held)])
+        across = (own + np.diag(precision[free])) @ moves
+        shared = of_all[np.ix_(free, held)]
+        of_held = _positive(
+            of_all[np.ix_(held, held)] - shared.T @ inverse(of_all[np.ix_(free, free)]) @ shared,
+            np.diag(every)[held],
+        )
         information[np.ix_(free, held)], information[np.ix_(held, free)] = across, across.T
         information[np.ix_(held, held)] = of_held + moves.T @ across
         # The free numbers are at their best; the held ones would move as far as in the fit with its weights.
@@ -205,11 +205,19 @@ def numbers_told(told: Sequence[Told], priors: Priors) -> Numbers:
 
 
 def _repeated(told: Sequence[Told], precision: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Curvature (k, k) of a fit with priors of this ``precision`` (k,), and covariance (k, k) of its estimate."""
+    """Curvature (k, k) of a fit with priors of this ``precision`` (k,), and precision (k, k) of its estimate."""
     curvature = sum((one.information for one in told), np.diag(precision))
     scatter = sum((one.scatter for one in told), np.diag(precision)) + _by_model_error(told, curvature)
-    back = inverse(curvature)
-    return curvature, back @ scatter @ back
+    scale = np.sqrt(np.maximum(np.diag(curvature), 1e-24))
+    unit = np.outer(scale, scale)
+    return curvature, curvature @ (inverse(scatter / unit) / unit) @ curvature
+
+
+def _positive(information: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """The information (k, k) without directions in which it is negative; ``size`` (k,) is that of the diagonal."""
+    unit = np.sqrt(np.outer(np.maximum(size, 1e-24), np.maximum(size, 1e-24)))
+    along, axes = np.linalg.eigh(0.5 * (information + information.T) / unit)
+    return np.asarray((axes * np.maximum(along, 0.0)) @ axes.T * unit)
 
 
 def _by_model_error(told: Sequence[Told], curvature: np.ndarray) -> np.ndarray:

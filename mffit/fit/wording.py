@@ -207,15 +207,15 @@ def zeros_of_rig_sentence(zeros: Mapping[str, tuple[float, float]], bands: Bands
     )
 
 
-def one_side_of_a_disc(held: Mapping[str, float]) -> str:
-    """A sentence on asymmetries that are held because a disc was run on one side only; empty if its zeros are not held."""
+def held_asymmetries(held: Mapping[str, float]) -> str:
+    """A sentence on asymmetries that a disc does not tell from turn slip, which are held; empty if its zeros are not held."""
     if not any(error_of(name) in ZEROS for name in held):
         return ""
     return (
-        "the formula misses these readings, and one side of a disc does not tell an asymmetry of the tyre or a zero of the rig "
+        "the formula misses these readings, and they do not tell an asymmetry of the tyre or a zero of the rig "
         "from what it misses of turn slip: asymmetries are held at their expected values and zeros as declared, with their "
-        "uncertainties, which brings the file nearer to the tyre on a straight road; the other side of the disc, or the tyre "
-        "turned on its rim, would tell them"
+        "uncertainties, which brings the file nearer to the tyre on a straight road; more of the other side of the disc, or the "
+        "tyre turned on its rim, would tell them"
     )
 
 
@@ -411,7 +411,7 @@ def remarks(
         bands_sentence(found, fitted.held, values, why_held(found.unseen, points, config.tyre.side)),
         *(beside_sentence(band) for band in (found.combined, found.other_side) if band is not None),
         zeros_of_rig_sentence(zeros, found) if zeros and not config.rig.on_disc else "",
-        one_side_of_a_disc(fitted.held_rig) if points.one_sided else "",
+        held_asymmetries(fitted.held_rig) if config.rig.on_disc else "",
     ]
     return [f"{text[0].upper()}{text[1:]}." for text in said if text]
 

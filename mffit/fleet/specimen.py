@@ -18,7 +18,7 @@ from mffit.fit.priors import scatter
 from mffit.numbers import Numbers, from_json
 from mffit.prediction.road import lesser
 from mffit.quantities import DIRECT, KEYS, OF_ROAD
-from mffit.rig_errors import BESIDE, DECLARED, OF_RUN, error_of, number_of
+from mffit.rig_errors import BESIDE, DECLARED, OF_RUN, ZEROS, error_of, number_of
 from mffit.rounding import AtLeast
 from mffit.sheets import file_of, sheet_of
 from tir import Quantity, Tyre
@@ -121,13 +121,15 @@ class Specimen:
 def freed(numbers: Numbers) -> Numbers | None:
     """The numbers of a build, also the coefficients that it held; None if its readings contain no information.
 
-    A held number of which they tell nothing is left out. Effects of the tyre that are not coefficients are left to readings and
-    priors, as they are estimated anew in every build.
+    A held number of which they tell nothing is left out, and so is a held error of the rig that is no zero: a calibration looks
+    like the tyre's own stiffness. Effects of the tyre that are not coefficients are left to readings and priors, as they are
+    estimated anew in every build.
     """
     silent = {
         name
         for i, name in enumerate(numbers.names)
-        if name in numbers.held and not numbers.information[i, i] > 0.0
+        if name in numbers.held
+        and (error_of(name) not in (None, *ZEROS) or not numbers.information[i, i] > 0.0)
     }
     known = numbers.given(silent)
     if not known.names:

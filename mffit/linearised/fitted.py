@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -12,6 +12,7 @@ import numpy as np
 from mffit.least_squares import inverse, root
 from mffit.linearised import constants
 from mffit.linearised.components import CERTAIN_EVIDENCE, Components, Terms, own_columns
+from mffit.linearised.gaussian import Informed
 from mffit.linearised.inputs import along, inputs_of, settings_of, turned
 from mffit.linearised.mixed import LeftOutReadings, Mixed, MixedPosterior, Variances
 from mffit.linearised.smooth import SmoothFunctions
@@ -225,6 +226,24 @@ class LinearisedFit:
         change = np.array([number.expected for number in zeros]) + covariance @ pull
         u = np.sqrt(np.diag(covariance))
         return dict(zip([n.name for n in zeros], zip(change.tolist(), u.tolist(), strict=True), strict=True))
+
+    def evidence_of(self, names: Collection[str]) -> float:
+        """Gain of log evidence by the named numbers within their priors, beside the model error and all others with a prior."""
+        known = [i for i, number in enumerate(self.numbers) if np.isfinite(number.spread)]
+        numbers = [self.numbers[i] for i in known]
+        spread, expected = (np.array([getattr(n, key) for n in numbers]) for key in ("spread", "expected"))
+        information, pull = np.zeros((len(spread), len(spread))), np.zeros(len(spread))
+        for channel in self.channels.values():
+            m = len(channel.missed)
+            columns = channel.model.common[:, m:] @ np.linalg.inv(channel.turn)[:, known]
+            given = channel.variances._replace(common=channel.variances.common[:m])
+            found = replace(channel.model, common=channel.model.common[:, :m]).further(given, columns)
+            information, pull = information + found.information, pull + found.pull
+        pull = spread * (pull - information @ expected)
+        information = information * np.outer(spread, spread)
+        others = [i for i, number in enumerate(numbers) if number.name not in names]
+        without = Informed.by(information[np.ix_(others, others)], pull[others])
+        return Informed.by(information, pull).gain - without.gain
 
 
 def linearised(

@@ -82,10 +82,9 @@ def turned(points: Points, channel: str) -> np.ndarray:
 def inputs_of(points: Points) -> tuple[Input, ...]:
     """The conditions that vary in these points.
 
-    On one side of a disc the mirror images of the readings count too: those of the other side, between which the straight road
-    lies.
+    On a disc the mirror images of the readings count too: those of the other side, between which the straight road lies.
     """
-    mirrored, points = points.one_sided, forwards(points)
+    mirrored, points = bool(np.all(points.phi_t)), forwards(points)
     found = []
     for name, kind in LEVELS.items():
         values = getattr(points, name)

@@ -17,6 +17,7 @@ from mffit.fit.plan import FitPlan
 from mffit.fit.polish import first_fit, polish, with_known_zeros
 from mffit.fit.problem import FitProblem
 from mffit.linearised import LinearisedFit
+from mffit.linearised.components import CERTAIN_EVIDENCE
 from mffit.progress import FITTING, FITTING_AGAIN, Progress
 from mffit.rig import Simulation
 
@@ -47,12 +48,13 @@ def fit_with_nuisances(
     one_mount = len(np.unique(problem.points.mount)) < 2
     if not config.rig.on_disc and len(problem.points.used_setups) < 2 and one_mount:
         fitted, plan = with_known_zeros(fitted, problem, plan, left)
-    unseen = plan.asymmetries if problem.points.one_sided else []
+    unseen = plan.asymmetries if config.rig.on_disc else []
     found = _with_influences(config, problem, plan, fitted, left, progress)
     if not unseen:
         return found
     left = left_by(found.full, near=left)
-    if not any(channel.is_proven for channel in left.channels.values()):
+    exact = not any(channel.is_proven for channel in left.channels.values())
+    if exact or (not problem.points.one_sided and left.evidence_of(unseen) > CERTAIN_EVIDENCE):
         return replace(found, left=left)
     plan = plan.holding(unseen, UNSEEN)
     symmetric = {name: plan.expected.get(name, problem.value(name)) for name in unseen}

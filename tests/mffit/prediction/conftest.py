@@ -99,8 +99,11 @@ DISC = 1.323
 """Radius of the path on the disc [m]."""
 
 
-def disc_of_a_brush(folder: Path, tyre: Brush) -> Path:
-    """Sweeps of a symmetric brush tyre on one side of a disc, without errors of the rig; returns ``tyre.toml``."""
+def disc_of_a_brush(folder: Path, tyre: Brush, other_side: tuple[str, ...] = ()) -> Path:
+    """Sweeps of a symmetric brush tyre on one side of a disc, without errors of the rig; returns ``tyre.toml``.
+
+    The sweeps ``other_side`` are run on the other side too.
+    """
     random, files = np.random.default_rng(5), []
     lean = np.array([5.0, 10.0, 15.0, 20.0, 30.0, 40.0])
     plan = {
@@ -110,19 +113,22 @@ def disc_of_a_brush(folder: Path, tyre: Brush) -> Path:
     plan |= {f"{way}_roll": (np.linspace(-1.0, 1.0, 5), 0.0) for way in ("forward", "backward")}
     plan |= {f"leaned_{g}": (np.array(SLIP, dtype=float), float(g)) for g in (-30, -15, 15, 30)}
     folder.mkdir(parents=True)
+    sides = [*((name, 1.0) for name in plan), *((name, -1.0) for name in other_side)]
     for load in (1000.0, 1700.0, 2600.0):
-        for name, angles in plan.items():
+        for name, side in sides:
+            angles = plan[name]
             alpha, gamma = np.broadcast_arrays(*angles)
             way = -1.0 if name == "backward_roll" else 1.0
             Fy, Mz = tyre.forces(
-                *np.radians((alpha, gamma)), np.full(len(alpha), load), phi_t=-1.0 / DISC, direction=way
+                *np.radians((alpha, gamma)), np.full(len(alpha), load), phi_t=-side / DISC, direction=way
             )
             table = {"alpha_deg": alpha, "gamma_deg": gamma, "Fz_N": load, "p_kPa": 250.0, "V_mps": 6.0,
                      "direction": "forward" if way > 0.0 else "backward",
                      "Fy_N": Fy + 6.0 * random.standard_normal(len(Fy)), "Mz_Nm": Mz + 0.3 * random.standard_normal(len(Fy)),
                      "u_Fy_N": 6.0, "u_Mz_Nm": 0.3}  # fmt: skip
-            files.append(f"{name}_{load:.0f}.csv")
-            pd.DataFrame(table).to_csv(folder / files[-1], index=False)
+            run = {"file": f"{name}_{load:.0f}_{'left' if side > 0.0 else 'right'}.csv"}
+            files.append(run if side > 0.0 else run | {"path_centre": "right"})
+            pd.DataFrame(table).to_csv(folder / run["file"], index=False)
     shape = {"unloaded_radius": 0.306, "width": 0.15, "rim_radius": 0.2159}
     config = {
         "tyre": {"name": "brush", "nominal_load": tyre.nominal, "nominal_pressure": 250.0, **shape},
@@ -131,7 +137,7 @@ def disc_of_a_brush(folder: Path, tyre: Brush) -> Path:
             "u_loadcell_offset_N": 10.0, "u_camber_alignment_deg": 0.5, "u_slip_alignment_N": 25.0,
         },
         "rolling_radius": {"load_N": tyre.nominal, "effective_radius": tyre.r_e, "u_effective_radius": 0.0005},
-        "sweep": [{"file": name} for name in files],
+        "sweep": files,
     }  # fmt: skip
     path = folder / "tyre.toml"
     path.write_text(tomli_w.dumps(config))
