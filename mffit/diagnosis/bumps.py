@@ -14,6 +14,7 @@ from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.where import Range, bins
 from mffit.points import Points
+from mffit.scatter import rms
 from tir.frozen import ReadOnlyArrays
 
 SWEPT = {
@@ -51,6 +52,7 @@ class BumpScan(ReadOnlyArrays):
     bumps: np.ndarray  #: (n, k) unit bumps over the points
     regions: tuple[Ranges, ...]
     spread: Mapping[str, float]  #: usual amplitude by channel
+    allowed: Mapping[str, float]  #: by channel, the amplitude that the model error of the given file explains
 
     @cached_property
     def _white(self) -> list[tuple[str, int, np.ndarray, np.ndarray, np.ndarray]]:
@@ -81,7 +83,8 @@ class BumpScan(ReadOnlyArrays):
             score = (shapes.T @ left[rows]).astype(float) - inside.T @ along
             power = whole - np.einsum("ij,ij->j", inside, inside)
             precision = np.maximum(power, 0.0) + spread**-2.0
-            gain = 0.5 * score**2 / precision - 0.5 * np.log(precision * spread**2) - tried
+            beyond = np.maximum(np.abs(score) - self.allowed.get(channel, 0.0) * precision, 0.0)
+            gain = 0.5 * beyond**2 / precision - 0.5 * np.log(precision * spread**2) - tried
             k = int(np.argmax(gain))
             if gain[k] > best.gain:
                 amplitude = float(score[k] / precision[k])
@@ -89,8 +92,11 @@ class BumpScan(ReadOnlyArrays):
         return best
 
 
-def bump_scan(points: Points, noise: Noise) -> BumpScan:
-    """Bumps over sideslip, camber or slip, in the whole programme or in one bin of another variable."""
+def bump_scan(points: Points, noise: Noise, allowed: Mapping[str, float] | None = None) -> BumpScan:
+    """Bumps over sideslip, camber or slip, in the whole programme or in one bin of another variable.
+
+    ``allowed`` is, by channel, the amplitude over the rms of the readings that needs no cause.
+    """
     shapes, regions, cells = [], [], bins(points)
     for column, (widths, others) in SWEPT.items():
         parts = [({name: limits}, mask) for name in others for limits, mask in cells.get(name, ())]
@@ -106,7 +112,8 @@ def bump_scan(points: Points, noise: Noise) -> BumpScan:
         if np.any(np.nan_to_num(points.channel(name)))  # nothing is missing from a channel of zeros
     }
     bumps = np.column_stack(shapes) if shapes else np.empty((len(points), 0), np.float32)
-    return BumpScan(noise, bumps, tuple(regions), spread)
+    sizes = {name: part * rms(points.channel(name)) for name, part in (allowed or {}).items()}
+    return BumpScan(noise, bumps, tuple(regions), spread, sizes)
 
 
 def _bells(column: str, points: Points, widths: Sequence[float]) -> Iterator[tuple[Ranges, np.ndarray]]:

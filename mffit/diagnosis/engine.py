@@ -17,7 +17,15 @@ from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.inexact import with_zeros
 from mffit.diagnosis.needs import possible, without
 from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.notes import DiagnosisNote, NoRepair, NotVisible, OneSweep, TakenOff, WithinPlay
+from mffit.diagnosis.notes import (
+    DiagnosisNote,
+    LeftByBuild,
+    NoRepair,
+    NotVisible,
+    OneSweep,
+    TakenOff,
+    WithinPlay,
+)
 from mffit.diagnosis.priors import declared_priors, zeros_of_setups
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.repair import Confirmed, Repair, checked, repair
@@ -70,18 +78,20 @@ def diagnose(
     rest = (*beyond, *remaining(found))
     confirmed = Confirmed(found, given, named_effects(config, found, given), not_accepted(found), rest)
     done = repair(confirmed, validation, search)
-    notes = _notes(search, found, wrong, done, refused)
+    notes = _notes(search, confirmed, wrong, done, refused)
     before = raw_gap(points if asked.as_read is None else asked.as_read, start, kept, found.scatter)
     return answer(search, confirmed, done, notes, before)
 
 
 def _notes(
-    search: Search, found: Explanation, wrong: Misread | None, done: Repair, refused: NoRepair | None
+    search: Search, confirmed: Confirmed, wrong: Misread | None, done: Repair, refused: NoRepair | None
 ) -> list[DiagnosisNote]:
     """What the reader of a diagnosis must know in addition to its effects."""
+    found, left = confirmed.found, {name: search.asked.left[name] for name in search.allowed}
     remarks = (
         *(TakenOff(sentence) for sentence in search.asked.taken_off),
         wrong,
+        LeftByBuild(left) if found.smooth.expected and not confirmed.rest else None,
         without_noise(found.scatter),
         *offsets_or_memory(found.scatter, search.candidates, found.chosen.ids),
         _within_play(done.explanation),

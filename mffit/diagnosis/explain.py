@@ -118,7 +118,7 @@ def _selected(
 ) -> Explanation:
     """The selected effects, in competition with unnamed structure, without those of low certainty."""
     problem, chosen = select(given, candidates, places)
-    bumps = bump_scan(problem.points, problem.noise)
+    bumps = bump_scan(problem.points, problem.noise, problem.structure.allowed)
     found = Explanation(problem, chosen, tuple(candidates), bumps.best(chosen), bumps, refined=chosen)
     while found.chosen.effects:
         certainty = {effect: found.certainty(effect) for effect in found.chosen.effects}

@@ -34,6 +34,7 @@ class Explanation(ReadOnlyArrays):
     refined: Hypothesis  #: the chosen effects, estimated together with the coefficients of the model
     coefficients: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Estimates of the inexact coefficients: name -> (value, standard error)."""
+    moved: float = 0.0  #: log odds that they are further from the file than its uncertainty explains
     predicted: Mapping[str, Judged] = field(default_factory=dict)
     """Support of each effect by left-out sweeps, if the effects were chosen by prediction."""
     misfit: np.ndarray | None = None
@@ -105,7 +106,8 @@ class Explanation(ReadOnlyArrays):
     def with_coefficients(self, inexact: Inexactness) -> Explanation:
         """The explanation with the model's coefficients estimated together with the effects."""
         refined, coefficients = self.plain.refine(self.chosen, inexact)
-        return replace(self, refined=refined, coefficients=coefficients)
+        moved = inexact.surprise({name: value for name, (value, _) in coefficients.items()})
+        return replace(self, refined=refined, coefficients=coefficients, moved=moved)
 
     def withdrawn(self) -> Explanation:
         """The explanation without effects and repair; the unnamed structure is still that found with the effects."""

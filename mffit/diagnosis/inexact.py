@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import block_diag
+from scipy.special import chdtrc
 
+from mffit.diagnosis import constants
 from mffit.fit.priors import scatter
 from mffit.least_squares import root
 from mffit.points import Points
@@ -58,6 +60,13 @@ class Inexactness(ReadOnlyArrays):
         """Other numbers by name, then these, from their values and from moves of these in standard deviations."""
         own = self.expected + self.root @ x[len(names) :]
         return dict(zip((*names, *self.names), [*x[: len(names)].tolist(), *own.tolist()], strict=True))
+
+    def surprise(self, numbers: Mapping[str, float]) -> float:
+        """Negative log probability that some of the coefficients are as far from the file as these numbers, or further."""
+        own = self.without(frozenset(self.names) - numbers.keys())
+        away = np.linalg.pinv(own.root) @ (np.array([numbers[name] for name in own.names]) - own.expected)
+        square = float(away @ away) / constants.LOG_ODDS_DIVISOR
+        return -float(np.log(max(chdtrc(len(own.names), square), 1e-300)))
 
     def without(self, names: frozenset[str]) -> Inexactness:
         """The marginal prior of the other coefficients."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -192,6 +193,21 @@ class ModelOfLastBuild:
     @property
     def sentence(self) -> str:
         return f"The model is {self.file} of the last build."
+
+
+@dataclass(frozen=True, slots=True)
+class LeftByBuild:
+    """What remains may be what the formula cannot follow, because the build of the model left as much of its own readings."""
+
+    left: Mapping[str, float]  #: by channel, rms beyond the noise [N], [Nm]
+
+    @property
+    def sentence(self) -> str:
+        sizes = [f"{short(x)} {CHANNELS[n].unit} in {CHANNELS[n].word}" for n, x in self.left.items()]
+        return (
+            "What remains is taken for what the formula cannot follow: of its own readings the build of the model left "
+            f"{listed(sizes)} rms beyond the noise, and up to twice as much needs no cause."
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,7 +32,7 @@ class DiagnosisProblem:
 
     ``declared`` has the value and standard uncertainty of each declared rig error. ``offset`` (c n,) is added to the readings if
     ``start`` is not at the mean of the coefficients' prior. ``beside`` (c n, k) is the basis of smooth structure that the
-    evidence of every hypothesis allows for.
+    evidence of every hypothesis allows for, and ``allowed`` its amplitude by channel that needs no cause.
     """
 
     def __init__(
@@ -43,9 +43,11 @@ class DiagnosisProblem:
         declared: Mapping[str, tuple[float, float]] | None = None,
         offset: np.ndarray | None = None,
         beside: np.ndarray | None = None,
+        allowed: Mapping[str, float] | None = None,
     ) -> None:
         self.points, self.start, self.noise = points, start, noise
-        self.structure = SmoothStructure(noise, np.zeros((len(noise.u), 0)) if beside is None else beside)
+        basis = np.zeros((len(noise.u), 0)) if beside is None else beside
+        self.structure = SmoothStructure(noise, basis, allowed or {})
         self.amplitude: Mapping[str, float] = {}  # of the structure in the covariance, by channel
         self.declared, self.offset = declared or {}, offset
         self.measured = noise.measured(points)
@@ -69,7 +71,7 @@ class DiagnosisProblem:
 
     def at_amplitude(self, smooth: Smooth) -> DiagnosisProblem:
         """The problem with the amplitudes of smooth structure, as found with a hypothesis, in the covariance."""
-        amplitude = smooth.amplitude if smooth.found else {}
+        amplitude = smooth.amplitude if smooth.found else smooth.expected
         if amplitude == self.amplitude:
             return self
         kept = self._at_amplitudes  # few amplitudes are tried, each beside many hypotheses
@@ -264,10 +266,10 @@ class DiagnosisProblem:
         columns, residual = self._at_priors(fitted, numbers)
         model, now = self.structure.beside(columns, residual), self.amplitude
         found, alone = model.best(), fitted.log_evidence
-        if now:
+        if now or found.expected:
             alone -= self.noise.directions.half_log_determinant
             alone += self.structure.scatter.directions.half_log_determinant
-            alone -= model.evidence(now) + model.improbable(now) - model.evidence({})
+            alone -= model.evidence(now) + model.improbable(now) - model.evidence(found.expected)
         value = float(np.logaddexp(alone, alone + found.gain - constants.STRUCTURE_EVIDENCE))
         return replace(fitted, log_evidence=value, smooth=found, alone=alone)
 

@@ -35,6 +35,7 @@ class RestKind(Enum):
     LOCAL = "structure in one place"
     SCATTER = "scatter far beyond the stated noise"
     SWEEP = "one sweep that contradicts the others"
+    COEFFICIENTS = "coefficients further from the file of a build than their uncertainty explains"
     ALL = "misfit so far beyond the noise that the model hardly is one of this tyre"
 
 
@@ -63,8 +64,12 @@ def remaining(found: Explanation) -> tuple[Rest, ...]:
 def hardly_this_tyre(found: Explanation) -> tuple[Rest, ...]:
     """The misfit of a model that is so wrong, even with the best effects, that a name would be a guess; else empty.
 
-    It is the robust misfit in units of the stated noise, of the channel that fits better: one channel may be mostly noise.
+    A file of a build is so wrong if its coefficients leave their uncertainty. Otherwise it is the robust misfit in units of the
+    stated noise, of the channel that fits better: one channel may be mostly noise.
     """
+    strained = Rest(RestKind.COEFFICIENTS, "", found.moved)
+    if found.problem.structure.allowed and strained.found:
+        return (strained,)
     noise = found.scatter
     residual = found.problem.measured - found.problem.predict(found.refined.state)
     z = np.where(np.isfinite(noise.stated), residual / noise.stated, np.nan)

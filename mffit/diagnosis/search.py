@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from mffit.config import Config
+from mffit.constants import TWO_SIGMA
 from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import NotVisible, OneSweep
@@ -18,6 +19,7 @@ from mffit.effects import CATALOG, Effect
 from mffit.linearised.constants import DIVISIONS_OF_A_SWEEP
 from mffit.points import Points
 from mffit.rig import Simulation
+from mffit.scatter import rms
 from tir import Tyre
 
 
@@ -31,6 +33,8 @@ class Asked:
     coefficients: Inexactness | None = None
     """Prior of the model's coefficients; None: from ``model.u_coefficients``."""
     seen: bool = False  #: whether the model was fitted to these points
+    left: Mapping[str, float] = field(default_factory=dict)
+    """By channel, the rms [N], [Nm] by which the model misses the points of its build beyond the noise; empty if unknown."""
     repair_all: bool = False  #: whether every named effect is repaired, see :mod:`mffit.diagnosis.repair`
     as_read: Points | None = None  #: the points (n,) before known errors were subtracted, if any were
     taken_off: Sequence[str] = ()  #: sentences on what was subtracted
@@ -92,5 +96,12 @@ class Search:
         at = self.start.with_numbers(numbers) if numbers and state is not self.start else self.start
         moved = None if at is self.start else self.inexact.moved(self.points, state, at, self.channels)
         return DiagnosisProblem(
-            self.points, at, self.shared(noise, state), self.declared, moved, self.structure
+            self.points, at, self.shared(noise, state), self.declared, moved, self.structure, self.allowed
         )
+
+    @cached_property
+    def allowed(self) -> dict[str, float]:
+        """By channel, the amplitude up to which structure may be the model error of the build: two standard deviations of it."""
+        stated = self.asked.left
+        sizes = {name: rms(self.points.channel(name)) for name in self.channels if name in stated}
+        return {name: TWO_SIGMA * stated[name] / size for name, size in sizes.items() if size > 0.0}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -32,7 +32,9 @@ class Smooth:
 
     amplitude: dict[str, float]
     """By channel, rms over the rms of the readings; 0 or no entry without structure."""
-    gain: float  #: gain of log evidence
+    gain: float  #: gain of log evidence over the expected part
+    expected: Mapping[str, float] = field(default_factory=dict)
+    """By channel, the amplitude of the part that the model error of the given file explains; empty without any."""
 
     @property
     def found(self) -> bool:
@@ -91,6 +93,8 @@ class SmoothStructure(ReadOnlyArrays):
 
     scatter: Noise  #: noise with the other changes that readings share, without structure
     basis: np.ndarray  #: (c n, k) changes of the readings at amplitude 1, equally many for every channel
+    allowed: Mapping[str, float] = field(default_factory=dict)
+    """By channel, the largest amplitude that the model error of the given file explains; empty if that is unknown."""
 
     @cached_property
     def directions(self) -> dict[str, tuple[slice, Directions]]:
@@ -149,14 +153,22 @@ class BesideColumns(NamedTuple):
         return 0.5 * sum((size / constants.USUAL_MISS_OF_A_FORMULA) ** 2 for size in amplitude.values())
 
     def best(self) -> Smooth:
-        """The most likely amplitudes; the gain is reduced by a penalty for the search."""
+        """The most likely amplitudes; the gain over those allowed is reduced by a penalty for the search."""
         channels = self.structure.scatter.channels
-        size, without = dict.fromkeys(channels, 0.0), self.evidence({})
-        paid, gain = len(channels) * math.log(len(AMPLITUDES)), 0.0
+        expected, _ = self._climbed(dict.fromkeys(channels, 0.0), self.structure.allowed, 0.0)
+        paid = len(channels) * math.log(len(AMPLITUDES))
+        size, gain = self._climbed(expected, dict.fromkeys(channels, LARGEST), paid)
+        return Smooth(size, gain, {name: one for name, one in expected.items() if one})
+
+    def _climbed(
+        self, size: dict[str, float], largest: Mapping[str, float], paid: float
+    ) -> tuple[dict[str, float], float]:
+        """The most likely amplitudes up to the ``largest`` and their gain over ``size``, less what is ``paid`` for the search."""
+        channels, without, gain = self.structure.scatter.channels, self.evidence(size), 0.0
         for channel in (*channels, *channels[:-1]):  # shared changes correlate the channels
-            for amplitude in AMPLITUDES:
+            for amplitude in AMPLITUDES[largest.get(channel, 0.0) >= AMPLITUDES]:
                 trial = {**size, channel: float(amplitude)}
                 value = self.evidence(trial) - without - paid
                 if value > gain:
                     size, gain = trial, value
-        return Smooth(size, gain)
+        return size, gain

@@ -188,6 +188,8 @@ def _remains(rest: Rest, diagnosis: Diagnosis) -> str:
         case RestKind.SCATTER:
             most = f", most in {rest.sweep}" if rest.sweep else ""
             return f"{rest.channel} scatters by {short(rest.ratio)} times its stated noise{most}"
+        case RestKind.COEFFICIENTS:
+            return "its coefficients would have to leave the uncertainty of their build: the model hardly is one of this tyre"
         case RestKind.ALL:
             return (
                 f"it is {rest.ratio:.0f} times the stated noise, so that the model hardly is one of this tyre"

@@ -96,12 +96,13 @@ def _explained(
     if other is not None:
         progress(other.sentence)
     same = fitted_to(chosen.tyre, config)
-    known, seen = known_of_model(chosen.tyre, config, chosen.file, same=same, fresh=chosen.fresh)
+    known = known_of_model(chosen.tyre, config, chosen.file, same=same, fresh=chosen.fresh)
     asked = Asked(
         rig=rig_of_build(chosen.tyre) if same else None,
         effects=effects,
-        coefficients=known,
-        seen=seen,
+        coefficients=known.coefficients,
+        seen=known.seen,
+        left=known.left,
         repair_all=repair_all,
         as_read=reading.as_read,
         taken_off=reading.taken_off,

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any, NamedTuple
 from urllib.parse import quote, unquote
 
 import numpy as np
@@ -129,35 +132,71 @@ def fitted_to(tyre: Tyre, config: Config) -> bool:
     return bool(of_file) and of_file == _of_inputs(input_hashes(config))
 
 
-def known_of_model(
-    tyre: Tyre, config: Config, path: Path | None, *, same: bool, fresh: bool
-) -> tuple[Inexactness | None, bool]:
-    """The uncertainty of a model's coefficients, None if unknown; and whether the model was fitted to the present sweeps.
+class KnownOfModel(NamedTuple):
+    """What the build of a model states about it."""
+
+    coefficients: Inexactness | None = None  #: their uncertainty; None if unknown
+    seen: bool = False  #: whether the model was fitted to the present sweeps
+    left: Mapping[str, float] = MappingProxyType({})
+    """By channel, the rms [N], [Nm] by which it misses the points of its build beyond the noise; empty if unknown."""
+
+
+def known_of_model(tyre: Tyre, config: Config, path: Path | None, *, same: bool, fresh: bool) -> KnownOfModel:
+    """What is known of a model from its build.
 
     Coefficients fitted to the present sweeps (``same``, see :func:`fitted_to`, or ``fresh``: just now) are fitted again; those
     of a build on other sweeps have that build's posterior. ``model.u_coefficients`` takes precedence over a posterior. A file
     counts as built only if result.json next to it has the same values, because it may have been edited since.
     """
-    posterior = None if path is None else posterior_of(tyre, path)
+    result = {} if path is None else _result_of(tyre, path)
+    posterior = _posterior(result)
     if same and (fresh or posterior is not None):
         known = {name: entry.u for name, entry in config.coefficients.items() if entry.u is not None}
-        return refitted(tyre, curved=config.rig.on_disc, stated=known), True
-    return (None if config.model.u_coefficients else posterior), False
+        return KnownOfModel(refitted(tyre, curved=config.rig.on_disc, stated=known), seen=True)
+    return KnownOfModel(None if config.model.u_coefficients else posterior, left=_left(result))
 
 
 def posterior_of(tyre: Tyre, path: Path) -> Inexactness | None:
     """The posterior of the build that wrote a file; None if no build did or the file was edited."""
+    return _posterior(_result_of(tyre, path))
+
+
+def _result_of(tyre: Tyre, path: Path) -> dict[str, Any]:
+    """The result of the build that wrote a file; empty if no build did or the file was edited."""
     try:
-        result = json.loads((path.parent / "result.json").read_text(encoding="utf-8"))
+        result: dict[str, Any] = json.loads((path.parent / "result.json").read_text(encoding="utf-8"))
+        values = {name: float(row["value"]) for name, row in result["fit"]["coefficients"].items()}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return {}
+    same = all(np.isclose(float(tyre[n]), v, rtol=1e-6, atol=1e-12) for n, v in values.items())
+    return result if same else {}
+
+
+def _posterior(result: Mapping[str, Any]) -> Inexactness | None:
+    """The posterior of the coefficients that a result states; None without one."""
+    try:
         posterior, values = result["fit"]["posterior"], result["fit"]["coefficients"]
         rows = [k for k, name in enumerate(posterior["names"]) if name in values]
         names = [posterior["names"][k] for k in rows]
         covariance = np.array(posterior["covariance"], dtype=float)[np.ix_(rows, rows)]
-        expected = {name: float(row["value"]) for name, row in values.items()}
-    except (OSError, ValueError, KeyError, TypeError, IndexError):
+    except (ValueError, KeyError, TypeError, IndexError):
         return None
-    same = all(np.isclose(float(tyre[n]), v, rtol=1e-6, atol=1e-12) for n, v in expected.items())
-    return correlated(names, np.array([expected[n] for n in names]), covariance) if names and same else None
+    return correlated(names, np.array([values[n]["value"] for n in names]), covariance) if names else None
+
+
+def _left(result: Mapping[str, Any]) -> dict[str, float]:
+    """By channel, the rms [N], [Nm] by which a built file misses the readings of its build beyond their stated noise.
+
+    Readings of other runs contain it as well: the file holds for the mean of the runs.
+    """
+    try:
+        found = result["fit"]["channels"]
+        of_file = found | (result["fit"].get("runs") or {}).get("channels_without", {})
+        noise = {name: row["rmse"] / row["over_noise"] for name, row in found.items() if row["over_noise"]}
+        left = {name: row["rmse"] ** 2 - noise.get(name, 0.0) ** 2 for name, row in of_file.items()}
+    except (KeyError, TypeError, AttributeError):
+        return {}
+    return {name: math.sqrt(square) for name, square in left.items() if square > 0.0}
 
 
 def _quantities(measured: Measured) -> str:

@@ -15,7 +15,10 @@ from brush import Brush
 from disc_project import disc_project
 
 import mffit
+import tir
 from mffit.diagnosis import Diagnosis
+from mffit.diagnosis.notes import LeftByBuild
+from mffit.diagnosis.rest import Answer
 from tir import Tyre
 
 
@@ -36,9 +39,17 @@ def fitted_toy(tmp_path_factory) -> Tyre:
 
 
 @pytest.fixture(scope="module")
-def fitted_brush(tmp_path_factory) -> Tyre:
-    """The best file for the brush, which misses by 11 N where the noise is 6 N."""
-    return mffit.build(brush.written(Brush(), tmp_path_factory.mktemp("brush"), 51), with_report=False).tyre
+def built_brush(tmp_path_factory) -> Path:
+    """The file of a build for the brush, which misses by 11 N where the noise is 6 N, next to its result.json."""
+    out = tmp_path_factory.mktemp("brush") / "out"
+    mffit.build(brush.written(Brush(), out.parent, 51), out=out, with_report=False)
+    return out / "brush.tir"
+
+
+@pytest.fixture(scope="module")
+def fitted_brush(built_brush) -> Tyre:
+    """That file alone."""
+    return tir.read(built_brush)
 
 
 def assert_named(found: Diagnosis, *effects: str) -> None:
@@ -69,6 +80,33 @@ def test_an_error_of_the_rig_is_named_beside_the_miss_of_the_formula(
         table = pd.read_csv(path)
         table.assign(**{column: change(table[column])}).to_csv(path, index=False)
     assert_named(mffit.diagnose(project, fitted_brush), effect)
+
+
+def test_what_a_build_left_of_its_own_readings_is_not_missing_in_others(built_brush, tmp_path):
+    found = mffit.diagnose(brush.written(Brush(), tmp_path, 81), built_brush)
+    assert not found.effects
+    assert not found.unexplained
+    assert found.trusted
+    (note,) = [note for note in found.notes if isinstance(note, LeftByBuild)]
+    assert 6.0 < note.left["Fy"] < 15.0
+
+
+def test_a_change_of_the_tyre_is_repaired_beside_what_its_build_left(built_brush, tmp_path):
+    changed = Brush(reduction=0.3)
+    found = mffit.diagnose(brush.written(changed, tmp_path, 82), built_brush)
+    assert "camber-stiffness" in [one.effect.id for one in found.repaired]
+    assert found.answer is Answer.FOUND
+    assert found.trusted
+    gamma, Fz = np.radians(8.0), 1700.0
+    truth = float(changed.forces([0.0], [gamma], [Fz])[0][0])
+    given, corrected = (float(tyre(Fz, 0.0, gamma).Fy) for tyre in (tir.read(built_brush), found.tyre))
+    assert abs(corrected - truth) < 0.2 * abs(given - truth)
+
+
+def test_a_tyre_with_less_grip_is_another_than_that_of_the_build(built_brush, tmp_path):
+    found = mffit.diagnose(brush.written(Brush(mu=1.0), tmp_path, 83), built_brush)
+    assert found.unexplained
+    assert not found.effects
 
 
 def test_the_miss_of_the_formula_alone_is_no_effect(fitted_brush, tmp_path):

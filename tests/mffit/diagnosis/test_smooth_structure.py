@@ -66,3 +66,12 @@ def test_structure_is_found_where_the_readings_have_it(noise, size, found):
     assert best.found is found
     if found:
         assert best.amplitude["Fy"] > 4.0 * best.amplitude["Mz"]
+
+
+@pytest.mark.parametrize(("allowed", "found"), [({"Fy": 0.3}, False), ({"Mz": 0.3}, True)])
+def test_structure_that_is_allowed_in_its_channel_is_expected(noise, allowed, found):
+    readings = noise.u * np.random.default_rng(5).normal(size=2 * N) + 1.5 * BASIS[:, :5].sum(axis=1)
+    structure = SmoothStructure(noise, 10.0 * BASIS, allowed)
+    best = structure.beside(np.zeros((2 * N, 0)), readings / noise.u).best()
+    assert best.found is found
+    assert ("Fy" in best.expected) is not found

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from scipy.special import softmax
 
 from mffit.diagnosis import answer
 from mffit.diagnosis.answer import Judgement
+from mffit.diagnosis.inexact import correlated
 
 
 def explained(numbers, stderr=None):
@@ -47,3 +49,12 @@ def test_the_confidence_in_an_effect_is_its_share_of_the_evidence_of_all_that_ma
     judged = answer._judged(found, chosen.effects[0])
     assert judged.tied == ()
     assert judged.confidence == judged.together == pytest.approx(answer.tempered(0.9 * share))
+
+
+def test_coefficients_far_from_the_file_are_a_surprise_along_their_covariance_only():
+    covariance = np.array([[1.0, 0.99], [0.99, 1.0]])
+    prior = correlated(["PKY1", "PKY2"], np.array([10.0, 20.0]), covariance)
+    together, apart = {"PKY1": 11.0, "PKY2": 21.0}, {"PKY1": 11.0, "PKY2": 19.0}
+    assert prior.surprise(together) < 1.0
+    assert prior.surprise(apart) > 30.0
+    assert prior.surprise({"PKY1": 11.0}) == pytest.approx(prior.surprise({"PKY2": 19.0}))
