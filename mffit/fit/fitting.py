@@ -174,16 +174,19 @@ def _fitted_and_judged(
     found = fit_with_nuisances(config, problem, start, plan, progress)
     progress(PREDICTING)
 
+    def mostly_rejected(name: str, rows: np.ndarray) -> bool:
+        read = np.isfinite(problem.points.channel(name)[rows]) & np.isfinite(problem.sigma[name][rows])
+        return bool(2 * np.sum(read & np.isfinite(found.stated.sigma[name][rows])) < np.sum(read))
+
     def refit(without: np.ndarray) -> FittedModel:
         others = np.setdiff1d(np.arange(len(problem.points)), without)
         here = replace(found.stated, simulation=found.full.simulation).select(others)
         fitted = refitted(found.full, here, tolerance=constants.REFIT_TOLERANCE)
         sigma = {name: weights.copy() for name, weights in found.full.problem.sigma.items()}
         for name, weights in sigma.items():
-            own, read = (one.sigma[name][without] for one in (found.stated, problem))
             # Outliers are single readings; where most of a sweep are, the sweep itself is judged.
-            single = 2 * np.sum(np.isfinite(own)) >= np.sum(np.isfinite(read))
-            weights[without] = own if single else read
+            stated = problem if mostly_rejected(name, without) else found.stated
+            weights[without] = stated.sigma[name][without]
         return FittedModel(
             fitted.simulation, left_by(fitted, replace(found.full.problem, sigma=sigma), without, near=left)
         )
@@ -191,7 +194,9 @@ def _fitted_and_judged(
     left = left_by(found.full, near=found.left)
     fitted = FittedModel(found.full.simulation, left)
     with as_declared(config):
-        doubts = after_the_fit(JudgedSweeps(problem.points, axis_signs(config), fitted, refit))
+        doubts = after_the_fit(
+            JudgedSweeps(problem.points, axis_signs(config), fitted, refit, mostly_rejected)
+        )
     return found, left, doubts
 
 

@@ -57,6 +57,8 @@ class JudgedSweeps(NamedTuple):
     fitted: FittedModel  #: fit to all points
     refit: Callable[[np.ndarray], FittedModel]
     """Returns the fit without some rows (m,), and the linear model of residuals at all points, estimated without these rows."""
+    mostly_rejected: Callable[[str, np.ndarray], bool]
+    """Whether the fit rejected most readings of a channel at some rows (m,) as outliers."""
 
 
 class Error(NamedTuple):
@@ -208,8 +210,8 @@ def _suspects(campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str,
     """Groups with significant prediction errors, clearly larger than the median group's; the worst first.
 
     Runs are assumed not to differ. Errors are computed both with and without the estimated model error, because the model error
-    can hide a fault that only one sweep shows. A sweep most of whose readings lost their weight as outliers is a suspect as well:
-    what is left of it may agree.
+    can hide a fault that only one sweep shows. A sweep is suspected as well if most of its readings were rejected as outliers:
+    those that are left may agree.
     """
     worst: dict[int, float] = {}
     points, channels = campaign.points, campaign.fitted.left.channels
@@ -227,11 +229,7 @@ def _suspects(campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str,
             for k, e in errors.items():
                 if e.chance < level and e.ratio > constants.DISTRUSTED_MISFIT * usual:
                     worst[k] = max(worst.get(k, 0.0), e.ratio / usual)
-        for k, g in enumerate(found):
-            if 2 * np.sum(np.isin(g.index, channel.rows)) < np.sum(
-                np.isfinite(points.channel(name)[g.index])
-            ):
-                worst[k] = math.inf
+        worst |= {k: math.inf for k, g in enumerate(found) if campaign.mostly_rejected(name, g.index)}
     in_order = sorted(worst, key=lambda k: (not found[k].whole, -worst[k]))
     return [found[k] for k in in_order[: constants.MOST_SUSPECTS]]
 

@@ -14,6 +14,8 @@ import mffit
 import tir
 from mffit import virtual_rig
 from mffit.errors import InputError
+from mffit.linearised import constants
+from mffit.suspicion import others
 
 SAMPLES = Path(__file__).parents[3] / "samples"
 
@@ -131,3 +133,14 @@ def _error(model: tir.Tyre, true: tir.Tyre) -> float:
     loads, gamma = np.array([900.0, 1400.0, 2100.0])[:, None, None], np.radians([0.0, 15.0, 30.0])[:, None]
     a, b = (tyre(1.03 * loads, alpha, gamma, Vx=10.0, p=250e3).Fy for tyre in (model, true))
     return float(np.sqrt(np.mean((a - b) ** 2)))
+
+
+def test_readings_that_a_thinned_channel_leaves_unexamined_are_no_outliers(tmp_path, monkeypatch):
+    """Of a long recording a part of the readings is examined; a sweep that agrees is no suspect because of that."""
+    monkeypatch.setattr(constants, "POINTS_EXAMINED", 60)
+    suspected, suspects = [], others._suspects
+    monkeypatch.setattr(
+        others, "_suspects", lambda *given: suspected.append(suspects(*given)) or suspected[-1]
+    )
+    Campaign(tmp_path, "front-120-70", 3).build()
+    assert suspected == [[]]
