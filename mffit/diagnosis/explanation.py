@@ -34,7 +34,7 @@ class Explanation(ReadOnlyArrays):
     refined: Hypothesis  #: the chosen effects, estimated together with the coefficients of the model
     coefficients: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Estimates of the inexact coefficients: name -> (value, standard error)."""
-    moved: float = 0.0  #: log odds that they are further from the file than its uncertainty explains
+    moved: float = 0.0  #: negative log probability that they lie so far from the file by its uncertainty
     predicted: Mapping[str, Judged] = field(default_factory=dict)
     """Support of each effect by left-out sweeps, if the effects were chosen by prediction."""
     misfit: np.ndarray | None = None

@@ -111,7 +111,7 @@ def left_by(
     numbers = [uncertain(n) for n in free if error_of(n.name) or n.name not in fitted.at_bound]
     problem = of or fitted.problem
     # Asymmetries keep the values at which they are held, but the readings narrow their uncertainty.
-    beside = bool(np.all(problem.points.phi_t))
+    beside = problem.points.curved
     numbers += [
         Uncertain(name, 0.0, u, held=not (beside and is_asymmetry(name)))
         for name, u in fitted.taken_as_exact.items()

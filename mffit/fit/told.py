@@ -40,7 +40,7 @@ class Told(NamedTuple):
 
 
 def told_by_curves(problem: FitProblem, left: LinearisedFit, names: Sequence[str]) -> list[Told]:
-    """What every curve tells of the named numbers at the values of ``problem``, and at last what the measured radii tell.
+    """Information of every curve about the named numbers at the values of ``problem``; the last item is that of measured radii.
 
     ``left`` is the linear model of what the fit leaves.
     """
@@ -59,8 +59,9 @@ def told_by_curves(problem: FitProblem, left: LinearisedFit, names: Sequence[str
         of = curve[channel.rows]
         for sweep in np.unique(part.sweep):
             run = np.flatnonzero(part.sweep == sweep)
+            by_own = seen.by_own(run)
             for one in np.unique(of[run]).tolist():
-                told = seen.told(run[of[run] == one], channel.stride, run)
+                told = seen.told(run[of[run] == one], channel.stride, by_own)
                 found[one] = found[one] + told if one in found else told
     residual, by_radii = problem.radii_rows(names)
     of_radii = by_radii.T @ by_radii
@@ -91,7 +92,8 @@ def told_by_run(
         else:
             missed, own = channel.foreseen(run, force[name])
             seen = _Readings(slopes, np.full(n, channel.noise / u), own / u, missed / u, np.zeros(n))
-        out = out + seen.told(np.arange(n), 1, np.arange(n))
+        rows = np.arange(n)
+        out = out + seen.told(rows, 1, seen.by_own(rows))
     return out
 
 
@@ -124,14 +126,18 @@ class _Readings(NamedTuple):
     missed: np.ndarray  #: (n,) model error
     residual: np.ndarray  #: (n,) measured less model
 
-    def told(self, rows: np.ndarray, stride: int, run: np.ndarray) -> Told:
-        """Information of some ``rows`` of a ``run``, each of which represents ``stride`` readings.
+    def by_own(self, rows: np.ndarray) -> np.ndarray:
+        """Changes (k, q) of the score of some rows by one standard deviation of each effect that their run has of its own."""
+        return np.asarray(self.slopes[rows].T @ self.own[rows])
 
-        The scatter by what the run has of its own is the share of these rows: all shares add up to that of the run.
+    def told(self, rows: np.ndarray, stride: int, of_run: np.ndarray) -> Told:
+        """Information of some rows of a run, each of which represents ``stride`` readings.
+
+        What a run has of its own moves all its readings at once; ``of_run`` is :meth:`by_own` of them all. Each part of the run
+        has a share of that scatter, and the shares add up to the whole.
         """
         slopes = self.slopes[rows]
-        noisy, own = slopes * self.noise[rows, None], stride * slopes.T @ self.own[rows]
-        share = own @ (stride * self.slopes[run].T @ self.own[run]).T
+        noisy, share = slopes * self.noise[rows, None], stride**2 * self.by_own(rows) @ of_run.T
         return Told(
             information=stride * (slopes.T @ slopes),
             scatter=stride * (noisy.T @ noisy) + 0.5 * (share + share.T),
@@ -176,14 +182,13 @@ def numbers_told(told: Sequence[Told], priors: Priors) -> Numbers:
     by -H_ff^-1 H_fh. The information returned has these covariances and moves, and of the held numbers what they would have if
     all were free; it is without the priors. Where C exceeds a prior, the readings have no information.
     """
-    rows = range(len(priors.names))
-    held = [i for i in rows if priors.names[i] in priors.held]
-    free = [i for i in rows if i not in held]
-    precision = np.array([0.0 if i in held else priors.spread[i] ** -2.0 for i in rows])
+    is_held = np.array([name in priors.held for name in priors.names], dtype=bool)
+    held, free = np.flatnonzero(is_held).tolist(), np.flatnonzero(~is_held).tolist()
+    precision = np.where(is_held, np.inf, priors.spread) ** -2.0
     score = precision * (priors.values - priors.expected)
     curvature, precise = _repeated([one.only(free) for one in told], precision[free])
     own = _positive(precise - np.diag(precision[free]), np.diag(curvature))
-    information = np.zeros((len(rows), len(rows)))
+    information = np.zeros((len(is_held), len(is_held)))
     information[np.ix_(free, free)] = own
     if held:
         every, of_all = _repeated(told, precision)
@@ -214,7 +219,7 @@ def _repeated(told: Sequence[Told], precision: np.ndarray) -> tuple[np.ndarray, 
 
 
 def _positive(information: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """The information (k, k) without directions in which it is negative; ``size`` (k,) is that of the diagonal."""
+    """The information (k, k) with its negative eigenvalues set to 0; ``size`` (k,) is the scale of its diagonal."""
     unit = np.sqrt(np.outer(np.maximum(size, 1e-24), np.maximum(size, 1e-24)))
     along, axes = np.linalg.eigh(0.5 * (information + information.T) / unit)
     return np.asarray((axes * np.maximum(along, 0.0)) @ axes.T * unit)

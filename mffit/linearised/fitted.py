@@ -14,7 +14,7 @@ from mffit.linearised import constants
 from mffit.linearised.components import CERTAIN_EVIDENCE, Components, Terms, own_columns
 from mffit.linearised.gaussian import Informed
 from mffit.linearised.inputs import along, inputs_of, settings_of, turned
-from mffit.linearised.mixed import LeftOutReadings, Mixed, MixedPosterior, Variances
+from mffit.linearised.mixed import FurtherColumns, LeftOutReadings, Mixed, MixedPosterior, Variances
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
 from mffit.points.noise import stating
@@ -92,6 +92,12 @@ class LinearisedChannel(ReadOnlyArrays):
         settings = np.where(np.isfinite(settings), settings, middle)
         likeness, functions = self.smooth.faded(settings, np.array(self.components.lengths))
         return likeness, turned(points, self.name)[:, None] * functions
+
+    def told_beside(self, model: Mixed, columns: np.ndarray) -> FurtherColumns:
+        """What residuals of a ``model`` tell of further columns (n, j) beside the model error, with no other common number."""
+        m = len(self.missed)
+        given = self.variances._replace(common=self.variances.common[:m])
+        return replace(model, common=model.common[:, :m]).further(given, columns)
 
     def without_runs(self, rows: Sequence[np.ndarray], *, missed: bool) -> list[LeftOutReadings]:
         """Prediction of each set of ``rows`` from all other readings in a model without random effects of the runs.
@@ -219,8 +225,7 @@ class LinearisedFit:
         for channel in self.channels.values():
             m = len(channel.missed)
             model = _beside(channel.alone.model, rig, m, free)
-            given = channel.variances._replace(common=channel.variances.common[:m])
-            found = replace(model, common=model.common[:, :m]).further(given, model.common[:, m:])
+            found = channel.told_beside(model, model.common[:, m:])
             information, pull = information + found.information, pull + found.pull
         covariance = inverse(information)
         change = np.array([number.expected for number in zeros]) + covariance @ pull
@@ -234,10 +239,8 @@ class LinearisedFit:
         spread, expected = (np.array([getattr(n, key) for n in numbers]) for key in ("spread", "expected"))
         information, pull = np.zeros((len(spread), len(spread))), np.zeros(len(spread))
         for channel in self.channels.values():
-            m = len(channel.missed)
-            columns = channel.model.common[:, m:] @ np.linalg.inv(channel.turn)[:, known]
-            given = channel.variances._replace(common=channel.variances.common[:m])
-            found = replace(channel.model, common=channel.model.common[:, :m]).further(given, columns)
+            turned = channel.model.common[:, len(channel.missed) :]
+            found = channel.told_beside(channel.model, turned @ np.linalg.inv(channel.turn)[:, known])
             information, pull = information + found.information, pull + found.pull
         pull = spread * (pull - information @ expected)
         information = information * np.outer(spread, spread)

@@ -84,7 +84,7 @@ def inputs_of(points: Points) -> tuple[Input, ...]:
 
     On a disc the mirror images of the readings count too: those of the other side, between which the straight road lies.
     """
-    mirrored, points = bool(np.all(points.phi_t)), forwards(points)
+    mirrored, points = points.curved, forwards(points)
     found = []
     for name, kind in LEVELS.items():
         values = getattr(points, name)

@@ -75,13 +75,12 @@ def on_straight_path(
     The force lags behind a moving angle, and few readings at rest hardly show a slope. The fit separates
     the lag from the tyre. They are then stated at the nominal load, too, which is that of a build's headline.
     """
-    moved = bool(np.any(np.isfinite(points.time) & points.free_rolling))
-    keys = {
-        "C_alpha_straight": KEYS["C_alpha"],
-        **({name: KEYS[name] for name in ("C_alpha", "C_gamma")} if moved else {}),
-    }
+    keys, loads = {"C_alpha_straight": KEYS["C_alpha"]}, [row.load for row in before.per_load]
+    if np.any(np.isfinite(points.time) & points.free_rolling):
+        keys |= {name: KEYS[name] for name in ("C_alpha", "C_gamma")}
+        loads.append(config.tyre.nominal_load)
     found = {}
-    for load in (*(row.load for row in before.per_load), *[config.tyre.nominal_load] * moved):
+    for load in loads:
         numbers = of_forces(fitted, load, turn_slip=False)
         named = {name: numbers[key] for name, key in keys.items()}
         found[load] = {name: q._replace(origin="fitted") for name, q in named.items() if q.u}

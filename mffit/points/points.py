@@ -87,10 +87,15 @@ class Points(MeasuredRows):
         return np.asarray(np.abs(self.kappa) <= constants.SLIP)
 
     @property
+    def curved(self) -> bool:
+        """Whether the path of every point curves, as on a disc."""
+        return bool(np.all(self.phi_t))
+
+    @property
     def one_sided(self) -> bool:
         """Whether the path of every point curves to the same side, with the tyre mounted the same way."""
         alike = len(np.unique(np.sign(self.phi_t))) == 1 and len(np.unique(self.mount)) == 1
-        return bool(alike and np.all(self.phi_t))
+        return alike and self.curved
 
     @property
     def rolling_radius(self) -> np.ndarray:
