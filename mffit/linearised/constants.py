@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from tir.constant import Count, Real, Series
 
-FUNCTIONS = Count(
-    300, "-", "Most functions of the model error of a channel: 450 predict no better on real tyres."
-)
+FUNCTIONS = Count(300, "-", "Most functions of the model error of a channel.")
 LEAST_SHARE = Real(
     0.01,
     "-",
     "Variance of a function, over that of a constant at the shortest lengths, below which it is left out.",
 )
+CHOSEN_FOR = Real(0.5, "-", "Lengths, over the likely ones, for which the functions are chosen.")
 POINTS_EXAMINED = Count(
     4000, "-", "Most readings of a channel that are looked at: many more of one sweep tell nothing new."
 )

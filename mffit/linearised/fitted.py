@@ -13,7 +13,7 @@ from mffit.least_squares import inverse, root
 from mffit.linearised import constants
 from mffit.linearised.components import CERTAIN_EVIDENCE, Components, Terms, own_columns
 from mffit.linearised.gaussian import Informed
-from mffit.linearised.inputs import along, inputs_of, settings_of, turned
+from mffit.linearised.inputs import Input, along, inputs_of, settings_of, turned
 from mffit.linearised.mixed import FurtherColumns, LeftOutReadings, Mixed, MixedPosterior, Variances
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
@@ -44,6 +44,7 @@ class LinearisedChannel(ReadOnlyArrays):
     """(m,) estimated weights of ``smooth`` with fixed coefficients and rig zeros [unit of the channel]."""
     turn: np.ndarray  #: (k, k) changes of the fit's numbers by the independent changes in ``model``
     sweeps: np.ndarray  #: index of the sweep of every group of ``model``
+    seen: _LookedAt  #: conditions of the readings
 
     @property
     def smooth(self) -> SmoothFunctions:
@@ -122,9 +123,14 @@ class LinearisedChannel(ReadOnlyArrays):
             min(length, one.spacing) if one.is_held else length
             for one, length in zip(self.smooth.inputs, self.components.lengths, strict=True)
         )
-        terms = replace(self.alone, further=np.zeros(self.turn.shape[1]))
+        smooth = SmoothFunctions.over(self.smooth.inputs, self.seen.sign)
+        of_numbers = self.model.common[:, len(self.missed) :]
+        model = replace(
+            self.model, common=np.hstack([self.seen.columns(self.name, smooth, self.unit), of_numbers])
+        )
+        terms = Terms(model, smooth, np.zeros(of_numbers.shape[1]))
         given = terms.variances(replace(self.components, lengths=lengths))
-        (found,) = self._left_out(self.model, given, [rows])
+        (found,) = self._left_out(model, given, [rows])
         return found
 
     @cached_property
@@ -299,20 +305,24 @@ class _Sight(NamedTuple):
         if known is None:
             part, at_tyre = (p.select(rows, with_table=False) for p in (self.points, self.felt))
             inputs = inputs_of(at_tyre)
-            smooth = SmoothFunctions.over(inputs, mirrored)
-            columns = smooth.columns(settings_of(at_tyre, inputs))
-            known = _LookedAt(part, smooth, columns, along(at_tyre, inputs))
+            settings = settings_of(at_tyre, inputs)
+            known = _LookedAt(part, inputs, mirrored, settings, along(at_tyre, inputs))
             self.looked_at[key] = known
         return known
 
 
 class _LookedAt(NamedTuple):
-    """Points (n,) of a channel, and the smooth functions of the model error there."""
+    """Points (n,) of a channel, and the conditions over which the model error varies there."""
 
     points: Points
-    smooth: SmoothFunctions
-    columns: np.ndarray  #: (n, m) values of the smooth functions
+    inputs: tuple[Input, ...]  #: (d,)
+    sign: int  #: by which a mirror multiplies the channel
+    settings: np.ndarray  #: (n, d) the conditions
     along: np.ndarray  #: (n,) as :func:`mffit.linearised.inputs.along`
+
+    def columns(self, name: str, smooth: SmoothFunctions, unit: np.ndarray) -> np.ndarray:
+        """Values (n, m) of the functions in the readings of a channel, over ``unit`` (n,)."""
+        return np.asarray((turned(self.points, name) / unit)[:, None] * smooth.columns(self.settings))
 
 
 def unit_of(points: Points, channel: str, sigma: np.ndarray) -> np.ndarray:
@@ -333,27 +343,27 @@ def _channel(
     every = np.flatnonzero(used)
     stride = max(1, -(-len(every) // int(constants.POINTS_EXAMINED)))
     rows = every[::stride]
-    part, smooth, functions, place = sight.at(rows, name)
-    residual = part.channel(name) - model[rows]
+    seen = sight.at(rows, name)
+    part = seen.points
     unit = unit_of(part, name, sigma[rows])
     groups = [np.flatnonzero(part.sweep == k) for k in np.unique(part.sweep)]
-    own = own_columns(model[rows], place)
+    own = own_columns(model[rows], seen.along)
     if len(groups) == 1:  # random effects are not identifiable, and would absorb the model error
         own = np.zeros_like(own)
-    missed = (turned(part, name) / unit)[:, None] * functions
     slopes = sight.simulation.sensitivities(part, [number.name for number in sight.numbers], [name])[1][name]
     of_rig = [i for i, number in enumerate(sight.numbers) if _of_rig(number)]
     rig = slopes[:, of_rig] / unit[:, None]
     declared = np.log([sight.numbers[i].spread ** 2 for i in of_rig])
     known = ~np.isin(rows, sight.without)
+    residual = (part.channel(name) - model[rows]) / unit
     alone = Mixed(
-        residual=residual / unit - rig @ np.array([sight.numbers[i].expected for i in of_rig]),
-        common=np.hstack([missed, rig]),
+        residual=residual - rig @ np.array([sight.numbers[i].expected for i in of_rig]),
+        common=rig,
         own=own / unit[:, None],
         groups=[own for own in (g[known[g]] for g in groups) if len(own)],
     )
-    terms = Terms(alone, smooth, declared)
-    components = terms.most_probable(unit, sight.near.get(name))
+    terms, components = _likely(alone, declared, seen, name, unit, sight.near.get(name))
+    missed = terms.model.common[:, : len(terms.smooth.orders)]
     turn = _turn(sight.numbers, (slopes / sigma[rows][:, None])[known], stride)
     return LinearisedChannel(
         name=name,
@@ -361,13 +371,39 @@ def _channel(
         stride=stride,
         unit=unit,
         components=components,
-        model=Mixed(residual / unit, np.hstack([missed, slopes @ turn / unit[:, None]]), alone.own, groups),
+        model=Mixed(residual, np.hstack([missed, slopes @ turn / unit[:, None]]), alone.own, groups),
         variances=replace(terms, further=np.zeros(turn.shape[1])).variances(components),
         alone=terms,
         missed=_missed(terms, [sight.numbers[i] for i in of_rig], components),
         turn=turn,
         sweeps=np.unique(part.sweep),
+        seen=seen,
     )
+
+
+def _likely(
+    alone: Mixed,
+    declared: np.ndarray,
+    seen: _LookedAt,
+    name: str,
+    unit: np.ndarray,
+    near: Components | None,
+) -> tuple[Terms, Components]:
+    """The terms with the smooth functions that matter at the likely lengths, and the components of the largest evidence.
+
+    ``alone`` has no smooth functions; its residuals are over ``unit`` (n,). Without ``near``, the linear model of a similar
+    fit, the functions of the shortest lengths find the lengths: a model error that hardly changes over some conditions leaves
+    more functions to the others.
+    """
+
+    def over(lengths: Sequence[float] | None) -> Terms:
+        smooth = SmoothFunctions.over(seen.inputs, seen.sign, lengths)
+        missed = seen.columns(name, smooth, unit)
+        return Terms(replace(alone, common=np.hstack([missed, alone.common])), smooth, declared)
+
+    begin = over(None).most_probable(unit) if near is None else near
+    terms = over(begin.lengths)
+    return terms, terms.most_probable(unit, begin)
 
 
 def _missed(terms: Terms, rig: Sequence[Uncertain], components: Components) -> np.ndarray:

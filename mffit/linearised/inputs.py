@@ -30,6 +30,7 @@ OTHER_WORDS: Mapping[str, str] = {
 }
 ALSO: tuple[str, ...] = ("phi_t", "T", "mount")
 """Further conditions, each used only if it varies."""
+SLIPS: frozenset[str] = frozenset({"alpha", "kappa"})
 REVERSED: frozenset[str] = frozenset({"alpha", "gamma", "phi_t"})
 """Conditions that a mirror reverses."""
 
@@ -51,6 +52,15 @@ class Input:
     def width(self) -> float:
         """Width of the tested range."""
         return self.upper - self.lower
+
+    def stretched(self, values: np.ndarray) -> np.ndarray:
+        """Values of a swept slip on a scale with the same ends that is stretched around zero; others as they are."""
+        if self.name not in SLIPS or self.is_held:
+            return values
+        unit = self.width / constants.DIVISIONS_OF_A_SWEEP
+        low, high = np.arcsinh(self.lower / unit), np.arcsinh(self.upper / unit)
+        out: np.ndarray = self.lower + (np.arcsinh(values / unit) - low) / (high - low) * self.width
+        return out
 
     @property
     def is_held(self) -> bool:

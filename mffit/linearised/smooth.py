@@ -8,6 +8,7 @@ describe. A constant is one of the functions; the priors apportion it between mo
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,15 +30,19 @@ class SmoothFunctions(ReadOnlyArrays):
     orders: np.ndarray  #: (m, d) number of half waves of every function along every condition
 
     @classmethod
-    def over(cls, inputs: tuple[Input, ...], sign: int = 1) -> SmoothFunctions:
-        """The basis functions with the largest prior variance at the shortest lengths.
+    def over(
+        cls, inputs: tuple[Input, ...], sign: int = 1, lengths: Sequence[float] | None = None
+    ) -> SmoothFunctions:
+        """The basis functions with the largest prior variance at the shortest lengths, or near the likely ``lengths`` (d,).
 
         Of mirrored conditions, only those are used that a mirror multiplies by ``sign``.
         """
         orders, size = np.zeros((1, 0), dtype=int), np.zeros(1)
-        for one in inputs:  # further factors only reduce the variance, so small products are dropped at once
+        for one, length in zip(inputs, lengths or [0.0] * len(inputs), strict=True):
             order = np.arange(_most_half_waves(one) + 1)
-            size = (size[:, None] + _log_spectrum(np.pi * order * one.spacing / _length(one))[0]).ravel()
+            shortest = max(constants.CHOSEN_FOR * length, one.spacing)
+            # further factors only reduce the variance, so small products are dropped at once
+            size = (size[:, None] + _log_spectrum(np.pi * order * shortest / _length(one))[0]).ravel()
             orders = np.column_stack([np.repeat(orders, len(order), axis=0), np.tile(order, len(orders))])
             orders, size = orders[size > -LEAST], size[size > -LEAST]
         mirrored = np.array([one.mirrored for one in inputs], dtype=bool)
@@ -73,6 +78,17 @@ class SmoothFunctions(ReadOnlyArrays):
             size += (exponent - total)[self.orders[:, i]]
             slope[:, i] = (by_length - share @ by_length)[self.orders[:, i]]
         return size, slope
+
+    def left_out(self, pair: np.ndarray, lengths: np.ndarray) -> float:
+        """Variance that the functions leave out of the difference between two conditions (2, d), over that of the model error.
+
+        A force over slip may bend faster around zero, where bristles begin to slide, than readings beside it can show.
+        """
+        scaled = [one.stretched(values) for one, values in zip(self.inputs, pair.T, strict=True)]
+        far = np.sqrt(5.0) * np.abs([np.ptp(values) for values in scaled]) / lengths
+        alike = float(np.prod((1.0 + far + far**2 / 3.0) * np.exp(-far)))
+        known = float(np.exp(self.log_variance(lengths)[0]) @ np.ptp(self.columns(pair), axis=0) ** 2)
+        return max(2.0 * (1.0 - alike) - known, 0.0)
 
     def faded(self, settings: np.ndarray, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Correlation (n,) with the model error at the nearest tested settings (n, d), and the functions (n, m) times it."""

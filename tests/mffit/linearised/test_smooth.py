@@ -107,3 +107,25 @@ def test_a_condition_that_is_not_stated_is_averaged_over_its_usual_values():
     likeness, functions = smooth.faded(unstated, np.array([0.05, 8.0]))
     assert np.all(likeness == 1.0)
     assert functions == pytest.approx(np.mean(each, axis=0), abs=1e-12)
+
+
+def test_functions_are_chosen_for_the_likely_lengths():
+    """A long one over some conditions leaves more functions to the others."""
+    inputs = tuple(Input(f"x{i}", 0.0, 1.0, 0.1) for i in range(4))
+    first, again = (SmoothFunctions.over(inputs, lengths=at) for at in (None, (0.1, 5.0, 5.0, 5.0)))
+    assert first.orders[:, 0].max() < again.orders[:, 0].max()
+    assert again.orders[:, 1:].max() < first.orders[:, 1:].max()
+
+
+def test_a_slope_at_zero_slip_has_a_part_that_functions_leave_out():
+    """Most at zero, where a slip is stretched; the functions describe most of a slope over the load."""
+    alpha, lengths = Input("alpha", -0.2, 0.2, 0.4 / 12.0), np.array([0.05, 1500.0])
+    smooth, step = SmoothFunctions.over((alpha, LOAD)), np.array([[-1e-3, 0.0], [1e-3, 0.0]])
+    at_zero, aside = (smooth.left_out(step + np.array([x, 2000.0]), lengths) for x in (0.0, 0.15))
+    whole = 5.0 / 3.0 * (2e-3 / 0.05) ** 2  # slope of a Matern 5/2 function without the stretch
+    assert at_zero > 2.0 * whole
+    assert aside < 0.5 * whole
+    assert (
+        smooth.left_out(np.array([[0.1, 1990.0], [0.1, 2010.0]]), lengths)
+        < 0.5 * 5.0 / 3.0 * (20.0 / 1500.0) ** 2
+    )

@@ -101,7 +101,7 @@ def test_the_slopes_of_a_foreign_tyre_are_missed_by_what_is_said(foreign: Built)
     assert [one.load for one in slopes] == pytest.approx(LOADS)
     for one in slopes:
         true = np.diff(brush(end, 0.0, one.load)[0]) / np.diff(tyre(one.load, alpha=end).Fy) - 1.0
-        assert 0.4 < one.share / float(true[0]) < 1.3
+        assert 0.35 < one.share / float(true[0]) < 1.3
 
 
 def test_slopes_at_zero_slip_are_said_with_their_load():
