@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 
 from mffit.constants import COVERAGE_FACTOR_95, UPRIGHT
+from mffit.linearised.inputs import COLUMNS
 from mffit.numbers import Numbers
 from mffit.points import make_points
+from mffit.points.points import of_si
 from mffit.prediction import Predictor
+from mffit.prediction.conditions import PATH
 from mffit.quantities import CHARACTERISTICS
 from mffit.rounding import AtLeast
 from mffit.tested import tested_limit
@@ -107,6 +111,10 @@ def characteristics(
     if predictor is not None:
         best, _ = with_slopes(tyre, load, (), turn_slip=turn_slip, tested=tested, predictor=predictor)
     u = dict(zip(found, own.tolist(), strict=True))
+    if predictor is not None:
+        u |= {
+            key: max(u[key], between) for key, between in _u_of_slopes(predictor, tyre, load, found).items()
+        }
     numbers: dict[str, Quantity] = {}
     for key, known_as in CHARACTERISTICS.items():
         if key not in found:
@@ -115,6 +123,30 @@ def characteristics(
         kind = AtLeast if fall in found and best[fall] <= COVERAGE_FACTOR_95 * u[fall] else Quantity
         numbers[key] = kind(found[key], math.hypot(u[key], best[key] - found[key]), known_as.unit)
     return numbers
+
+
+def _u_of_slopes(
+    predictor: Predictor, tyre: Tyre, load: float, found: Mapping[str, float]
+) -> dict[str, float]:
+    """Standard uncertainties of the slopes ``found`` at zero, as readings know them together with the model error."""
+    still = {
+        "alpha_deg": 0.0,
+        "gamma_deg": 0.0,
+        "Fz_N": load,
+        "p_kPa": 1e-3 * float(tyre["INFLPRES"]),
+        PATH: 0.0,
+    }
+    u = {}
+    for key, by in DECIDED_BY.items():
+        if not by.largest and key != "trail_m" and by.channel in predictor.channels:
+            heading = COLUMNS[by.over]
+            ends = of_si(heading) * STEP * np.array([-1.0, 1.0])
+            at = pd.DataFrame(still | {heading: ends})
+            u[key] = predictor.u_between(tyre, at, by.channel, at_zero=True) / (2.0 * STEP)
+    of_trail = [
+        u.get(key, 0.0) / found[key] for key in ("C_alpha_N_per_rad", "C_Mz_alpha_Nm_per_rad") if found[key]
+    ]
+    return u | {"trail_m": abs(found["trail_m"]) * math.hypot(*of_trail)}
 
 
 def with_slopes(

@@ -108,7 +108,7 @@ def fit(
     simulation = Simulation(tyre.values, turn_slip=config.rig.on_disc)
     found_rig = {name: value for name, (value, _) in fitted.rig_stated.items()}
     known_forces, with_zeros = (
-        predictor(points, left_by_file, found_rig, exact, setups=setups)
+        predictor(points, left_by_file, found_rig, exact, setups=setups).stating(fitted.posterior)
         for exact in ((), zeros_of_rig(fitted.zeros))
     )
     wide = bands(known_forces, fitted.held, simulation, points, with_zeros)

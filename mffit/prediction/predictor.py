@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -12,10 +12,12 @@ import numpy as np
 import pandas as pd
 
 from mffit.constants import COVERAGE_FACTOR_95
+from mffit.least_squares import root
 from mffit.linearised import LinearisedChannel, LinearisedFit
 from mffit.linearised.components import Components
 from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
+from mffit.numbers import Numbers
 from mffit.points import Points, main_path, make_points
 from mffit.points.points import OF_SI
 from mffit.prediction.conditions import PATH, UNITS
@@ -75,11 +77,15 @@ class MissedChannel(ReadOnlyArrays):
         """The model error (n,) alone, as in :meth:`at`, averaged over conditions that are NaN."""
         return np.asarray(self._functions(settings)[1] @ self.missed)
 
-    def u_between(self, settings: np.ndarray, slopes: np.ndarray) -> float:
-        """Standard uncertainty of the force's difference between two conditions; ``settings`` and ``slopes`` as in :meth:`at`."""
+    def u_between(self, settings: np.ndarray, slopes: np.ndarray, *, at_zero: bool) -> float:
+        """Standard uncertainty of the force's difference between two conditions; ``settings`` and ``slopes`` as in :meth:`at`.
+
+        Conditions ``at_zero`` of a slip are so close that readings beside them need not show how the force bends there.
+        """
         likeness, functions = self._functions(settings)
         ((one, other),) = self._rows(functions, slopes)
-        unlike = np.sum(1.0 - likeness**2) * self.components.missed**2
+        left_out = self.smooth.left_out(settings, np.array(self.components.lengths)) if at_zero else 0.0
+        unlike = (np.sum(1.0 - likeness**2) + left_out) * self.components.missed**2
         return float(np.sqrt(np.sum((one - other) ** 2) + unlike))
 
     def _rows(self, functions: np.ndarray, *slopes: np.ndarray) -> list[np.ndarray]:
@@ -124,6 +130,8 @@ class Predictor:
     lowest_load: float = 0.0  #: lowest tested load [N], below which the model error falls with the load
     setups: Mapping[str, float] = field(default_factory=dict)
     """Standard deviation of the zeros from one set-up of the rig to the next."""
+    stated: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
+    """(k, r): stated @ stated.T is the covariance of the numbers as the fit states it; empty if it states none."""
 
     @property
     def curved(self) -> bool:
@@ -194,10 +202,13 @@ class Predictor:
         forces, slopes = fitted.sensitivities(points, self.names, names)
         by_zeros = fitted.sensitivities(points, [*self.setups], names)[1]
         as_read = fitted.with_numbers(self.zeros).readings(points, names)
+        off = self._off_path(fitted, points, slopes)
         found = {}
         for name in names:
             channel = self.channels[name]
             missed, variance, of_reading = self._missed(channel, points, slopes[name])
+            further = np.maximum(off[name] - variance, 0.0)
+            variance, of_reading = variance + further, of_reading + further
             best = forces[name] + missed
             tight = of_reading + channel.components.run_variance(best) + channel.noise**2
             of_run = tight + (as_read[name] - forces[name]) ** 2
@@ -205,10 +216,32 @@ class Predictor:
             found[name] = PredictedForce(plain[name], best, variance, of_run, of_setup)
         return found
 
-    def u_between(self, fitted: Tyre, conditions: pd.DataFrame, channel: str) -> float:
+    def _off_path(
+        self, fitted: Simulation, points: Points, slopes: Mapping[str, np.ndarray]
+    ) -> dict[str, np.ndarray]:
+        """By channel, the variance (n,) of the change that the formula makes to a force from the tested path to another one.
+
+        Readings on one path hold the forces there, but not each coefficient. ``slopes`` (n, k) are derivatives of the forces.
+        """
+        tested = np.where(points.phi_t * self.path < 0.0, -self.path, self.path)
+        rows = np.flatnonzero(points.phi_t != tested)
+        out = {name: np.zeros(len(points)) for name in slopes}
+        if len(rows) and len(self.stated):
+            there = points.replace(phi_t=tested).select(rows, with_table=False)
+            for name, own in fitted.sensitivities(there, self.names, [*slopes])[1].items():
+                out[name][rows] = np.sum(((slopes[name][rows] - own) @ self.stated) ** 2, axis=1)
+        return out
+
+    def stating(self, numbers: Numbers) -> Predictor:
+        """This predictor with the covariance of the numbers as the fit states it, which counts on other paths than the tested."""
+        return replace(self, stated=root(numbers.covariance_of(self.names))) if self.curved else self
+
+    def u_between(
+        self, fitted: Tyre, conditions: pd.DataFrame, channel: str, *, at_zero: bool = False
+    ) -> float:
         """Standard uncertainty of the difference of the tyre's mean force between two conditions, [unit of the channel].
 
-        Conditions that are not stated are those in the middle of their values.
+        Conditions that are not stated are those in the middle of their values; ``at_zero`` as in :class:`MissedChannel`.
         """
         points, own = self.points(fitted, conditions), self.channels[channel]
         if self.T_range is not None:
@@ -218,7 +251,7 @@ class Predictor:
         model = Simulation.of(fitted, turn_slip=self.curved).with_numbers(self.beside)
         slopes = model.sensitivities(points, self.names, [channel])[1][channel] * self._of_tyre
         middle = np.mean([*_settings(points, own.smooth.inputs)], axis=0)
-        return own.u_between(middle, slopes)
+        return own.u_between(middle, slopes, at_zero=at_zero)
 
     def least_known(self, fitted: Tyre, channel: str) -> str:
         """The coefficient that adds most to the uncertainty of a channel of the upright wheel at nominal load and no slip."""

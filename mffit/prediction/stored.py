@@ -46,6 +46,7 @@ def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
         "setups": dict(found.setups),
         "T_range_degC": found.T_range,
         "lowest_load_N": found.lowest_load,
+        "stated": _text(found.stated),
         "channels": {
             name: {
                 "inputs": [asdict(one) for one in own.smooth.inputs],
@@ -161,6 +162,7 @@ def _predictor(content: dict[str, Any]) -> Predictor:
         channels={name: _channel(own, len(names)) for name, own in channels.items()},
         T_range=None if T_range is None else (float(T_range[0]), float(T_range[1])),
         lowest_load=float(content["lowest_load_N"]),
+        stated=_array(content["stated"], len(names)),
         **{
             key: {ERROR_OF[name].name: float(value) for name, value in content[key].items()}
             for key in ("zeros", "beside", "setups")

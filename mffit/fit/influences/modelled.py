@@ -126,7 +126,9 @@ def at_temperature(
         left_out=verdict.beside,
         left_out_plain=verdict.without,
         moved=_moved(found),
-        prediction=predictor(points, left, {**rig, T_REF: T_ref}, terms=(*terms, T_REF), setups=setups),
+        prediction=predictor(
+            points, left, {**rig, T_REF: T_ref}, terms=(*terms, T_REF), setups=setups
+        ).stating(full.posterior),
     )
 
 

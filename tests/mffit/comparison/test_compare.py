@@ -172,13 +172,18 @@ def test_uncertainties_of_numbers_are_those_of_small_changes():
 
 
 def test_the_model_error_counts_for_the_numbers_of_its_channel():
-    """A miss of the side force that is proportional to sideslip adds its slope to the cornering stiffness."""
+    """A miss of the side force that is proportional to sideslip adds its slope to the cornering stiffness's uncertainty."""
     known = known_to(("PKY1", "QDZ1"), np.diag([9.0, 0.01]) ** 2)
-    missed = SimpleNamespace(channels={"Fy": None}, missed=lambda _, points: 4000.0 * points.alpha)
+    missed = SimpleNamespace(
+        channels={"Fy": None},
+        missed=lambda _, points: 4000.0 * points.alpha,
+        u_between=lambda tyre, ends, channel, at_zero: 1e5 * float(np.ptp(np.radians(ends.alpha_deg))),
+    )
     alone, beside = (
         characteristics(truth(), 1400.0, turn_slip=False, known=known, predictor=by) for by in (None, missed)
     )
-    u = math.hypot(alone["C_alpha_N_per_rad"].u, 4000.0)
+    assert alone["C_alpha_N_per_rad"].u < 1e5
+    u = math.hypot(1e5, 4000.0)  # the slope at zero is known no better than readings show it
     assert beside["C_alpha_N_per_rad"].u == pytest.approx(u, rel=1e-6)
     assert beside["C_alpha_N_per_rad"].value == alone["C_alpha_N_per_rad"].value
     assert alone["Mz_peak_Nm"] == beside["Mz_peak_Nm"]

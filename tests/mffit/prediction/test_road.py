@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+import pandas as pd
 import pytest
 from brush import Brush
 from conftest import DISC, brush, build, disc_of_a_brush
@@ -14,6 +15,7 @@ from conftest import DISC, brush, build, disc_of_a_brush
 import tir
 from mffit.fit.coverage import UNSEEN
 from mffit.measured import camber_of_no_spin
+from mffit.rig import Simulation
 from mffit.rig_errors import error_of
 from mffit.rounding import AtLeast
 from mffit.scatter import rms
@@ -76,6 +78,20 @@ def test_the_other_side_of_a_disc_shows_an_asymmetry_that_there_is(tmp_path, run
     road, none = found.result.road.upright, 0.0 * found.result.road.upright.sideslip
     true, _ = TYRE.forces(road.sideslip, none, none + found.result.road.load)
     assert np.mean(np.abs(road.best["Fy"] - true) < 1.96 * road.u["Fy"]) > 0.9
+
+
+def test_the_road_is_known_no_better_than_what_the_coefficients_change_from_the_disc_to_it(built):
+    """By the posterior of the fit: its readings on one path hold the forces there, but not each coefficient."""
+    at = pd.DataFrame({"alpha_deg": np.linspace(-7.0, 7.0, 15), "gamma_deg": 20.0, "Fz_N": 1700.0})
+    result = built.result
+    known, tyre = result.prediction, result.tyres[result.fitted]
+    names, simulation = known.names, Simulation.of(tyre, turn_slip=True)
+    road, disc = (
+        simulation.sensitivities(known.points(tyre, at.assign(phi_t_per_m=phi_t)), names, ["Mz"])[1].Mz
+        for phi_t in (0.0, known.path)
+    )
+    least = result.fit.search.posterior.spread_of(road - disc, names)
+    assert np.all(built.predict(**at, phi_t_per_m=0.0)["u_Mz_best_Nm"] >= 0.999 * least)
 
 
 def test_the_disc_is_predicted_as_well_as_before(built):
