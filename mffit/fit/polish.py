@@ -67,9 +67,9 @@ def with_known_zeros(
 
     One set-up cannot separate a zero from an asymmetry that the formula misses: a free zero absorbs the asymmetry, tens of
     standard uncertainties away from the readings at zero slip. The zeros are therefore estimated together with the model error.
-    If no model error is proven, the fit and the plan are returned unchanged.
+    If no model error is likely, the fit and the plan are returned unchanged.
     """
-    if not any(channel.is_proven for channel in left.channels.values()):
+    if left.is_exact:
         return fitted, plan
     found = left.zeros
     spread = {n.name: n.spread for n in plan.rig if n.name in found}

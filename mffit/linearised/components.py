@@ -18,6 +18,8 @@ from tir.frozen import ReadOnlyArrays
 
 CERTAIN_EVIDENCE = 0.5 * CERTAIN_SIGMA**2
 """Log evidence that proves a model error, and a condition over which it changes."""
+LIKELY_EVIDENCE = math.log(0.95 / 0.05)
+"""Log evidence from which a model error has a probability of 95 %, if one is as probable as none."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ import numpy as np
 
 from mffit.least_squares import inverse, root
 from mffit.linearised import constants
-from mffit.linearised.components import CERTAIN_EVIDENCE, Components, Terms, own_columns
+from mffit.linearised.components import CERTAIN_EVIDENCE, LIKELY_EVIDENCE, Components, Terms, own_columns
 from mffit.linearised.gaussian import Informed
 from mffit.linearised.inputs import Input, along, inputs_of, settings_of, turned
 from mffit.linearised.mixed import FurtherColumns, LeftOutReadings, Mixed, MixedPosterior, Variances
@@ -216,6 +216,14 @@ class LinearisedFit:
 
     numbers: tuple[Uncertain, ...]  #: (k,) coefficients and rig errors
     channels: Mapping[str, LinearisedChannel]
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether no channel has a likely model error.
+
+        Numbers that the data tell only if the formula is exact are not told by them where noise may hide what it misses.
+        """
+        return all(channel.proof < LIKELY_EVIDENCE for channel in self.channels.values())
 
     @property
     def zeros(self) -> dict[str, tuple[float, float]]:

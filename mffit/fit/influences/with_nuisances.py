@@ -53,8 +53,7 @@ def fit_with_nuisances(
     if not unseen:
         return found
     left = left_by(found.full, near=left)
-    exact = not any(channel.is_proven for channel in left.channels.values())
-    if exact or (not problem.points.one_sided and left.evidence_of(unseen) > CERTAIN_EVIDENCE):
+    if left.is_exact or (not problem.points.one_sided and left.evidence_of(unseen) > CERTAIN_EVIDENCE):
         return replace(found, left=left)
     plan = plan.holding(unseen, UNSEEN)
     symmetric = {name: plan.expected.get(name, problem.value(name)) for name in unseen}

@@ -99,10 +99,10 @@ DISC = 1.323
 """Radius of the path on the disc [m]."""
 
 
-def disc_of_a_brush(folder: Path, tyre: Brush, other_side: tuple[str, ...] = ()) -> Path:
+def disc_of_a_brush(folder: Path, tyre: Brush, other_side: tuple[str, ...] = (), noise: float = 6.0) -> Path:
     """Sweeps of a symmetric brush tyre on one side of a disc, without errors of the rig; returns ``tyre.toml``.
 
-    The sweeps ``other_side`` are run on the other side too.
+    The sweeps ``other_side`` are run on the other side too. ``noise`` is that of the side force [N].
     """
     random, files = np.random.default_rng(5), []
     lean = np.array([5.0, 10.0, 15.0, 20.0, 30.0, 40.0])
@@ -124,8 +124,9 @@ def disc_of_a_brush(folder: Path, tyre: Brush, other_side: tuple[str, ...] = ())
             )
             table = {"alpha_deg": alpha, "gamma_deg": gamma, "Fz_N": load, "p_kPa": 250.0, "V_mps": 6.0,
                      "direction": "forward" if way > 0.0 else "backward",
-                     "Fy_N": Fy + 6.0 * random.standard_normal(len(Fy)), "Mz_Nm": Mz + 0.3 * random.standard_normal(len(Fy)),
-                     "u_Fy_N": 6.0, "u_Mz_Nm": 0.3}  # fmt: skip
+                     "Fy_N": Fy + noise * random.standard_normal(len(Fy)),
+                     "Mz_Nm": Mz + 0.05 * noise * random.standard_normal(len(Fy)),
+                     "u_Fy_N": noise, "u_Mz_Nm": 0.05 * noise}  # fmt: skip
             run = {"file": f"{name}_{load:.0f}_{'left' if side > 0.0 else 'right'}.csv"}
             files.append(run if side > 0.0 else run | {"path_centre": "right"})
             pd.DataFrame(table).to_csv(folder / run["file"], index=False)
