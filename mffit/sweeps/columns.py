@@ -94,7 +94,10 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
         if channel.name not in headings:
             continue
         name, gaps = channel.name, "time_s" in headings and channel.name != "time_s"
-        values = _read(_Source(raw, channel, headings[name], mapping.get(name), gaps, warnings))
+        source = _Source(raw, channel, headings[name], mapping.get(name), gaps, warnings)
+        values = _read(source)
+        if values is not None and name in UNCERTAINTIES:  # the table lists them after their channels
+            values = _credible(source, values, found.get(name.removeprefix("u_"), np.zeros(0)))
         if values is not None:
             found[name] = values
     taken = {*headings, *headings.values()}
@@ -247,8 +250,7 @@ def _read(source: _Source) -> np.ndarray | None:
     values = _numbers(source)
     if channel.name == "time_s" and np.any(np.isnan(values)):
         values = _without_missing_times(source, values)
-    values = _in_range(source, _in_contract_unit(source, values))
-    return _positive(source, values) if channel.name in UNCERTAINTIES else values
+    return _in_range(source, _in_contract_unit(source, values))
 
 
 def _without_missing_times(source: _Source, time: np.ndarray) -> np.ndarray:
@@ -406,20 +408,25 @@ def implausible(values: np.ndarray, channel: Channel, *, may_have_gaps: bool) ->
     return bool(np.sum(_outside(values, channel)) > share * len(values))
 
 
-def _positive(source: _Source, u: np.ndarray) -> np.ndarray:
-    """Uncertainties, with NaN for values not above zero, because a point without uncertainty would outweigh all others."""
-    wrong = u <= 0.0
+def _credible(source: _Source, u: np.ndarray, readings: np.ndarray) -> np.ndarray:
+    """Uncertainties, with NaN for values that no rig can have, because such a point would outweigh all others.
+
+    ``readings`` (n,) are those of the channel; (0,) if the file has none.
+    """
+    limit = constants.SMALLEST_U_OF_READINGS * float(np.nanmax(np.abs(readings), initial=0.0))
+    if not np.any(u > limit):
+        least = "zero" if np.all(u <= 0.0) else f"{limit:.2g}, a millionth of the largest reading,"
+        sentence = f"is not above {least} in any row, as a standard uncertainty must be; complete or remove the column"
+        raise source.refusal(sentence, int((u <= limit).argmax()))
+    limit = max(limit, constants.SMALLEST_U_OF_OTHERS * float(np.median(u[u > limit])))
+    wrong = u <= limit
     if not np.any(wrong):
         return u
     row, count = int(wrong.argmax()), int(wrong.sum())
-    if not np.any(u > 0.0):
-        raise source.refusal(
-            "is not above zero in any row, as a standard uncertainty must be; complete or remove the column",
-            row,
-        )
+    least = "zero" if u[row] <= 0.0 else f"{limit:.2g}, so this point would outweigh all others"
     also = f" here and in {count - 1} more {'row' if count == 2 else 'rows'}" if count > 1 else ""
     source.warnings.append(
-        str(source.refusal(f"{u[row]:g} is not above zero; treated as not stated{also}", row))
+        str(source.refusal(f"{u[row]:g} is not above {least}; treated as not stated{also}", row))
     )
     return np.where(wrong, np.nan, u)
 

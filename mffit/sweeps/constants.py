@@ -5,6 +5,16 @@ from __future__ import annotations
 from tir.constant import Count, Real
 
 SMALLEST_LOAD_IN_NEWTONS = Real(20.0, "N", "If all loads of a file are below this, they are in kilonewtons.")
+SMALLEST_U_OF_READINGS = Real(
+    1e-6,
+    "-",
+    "Standard uncertainty over the largest reading that no rig reaches: national standards of force realise 2e-5.",
+)
+SMALLEST_U_OF_OTHERS = Real(
+    1e-3,
+    "-",
+    "Standard uncertainty over the median of its column below which a point outweighs a million others.",
+)
 RARE_SAMPLES = Real(0.01, "-", "Share of samples that spikes spoil; more have a cause, such as a wrong unit.")
 STANDSTILL = Real(
     0.02,

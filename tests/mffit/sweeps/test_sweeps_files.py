@@ -296,6 +296,28 @@ def test_an_uncertainty_not_above_zero_is_treated_as_not_stated(project, u, more
     assert more in warning
 
 
+@pytest.mark.parametrize("u", [1e-12, 1e-4, 5e-3])
+def test_an_uncertainty_that_would_outweigh_all_others_is_treated_as_not_stated(project, u):
+    found = load(with_uncertainties(project, 6.0, u))
+    u_Fy = sweep_named(found, NAME).u_Fy
+    np.testing.assert_array_equal(np.isfinite(u_Fy), np.arange(len(u_Fy)) != 1)
+    (warning,) = found.warnings
+    said = rf"{NAME}:3: column u_Fy_N: {u:g} is not above 0.006, so this point would outweigh all others"
+    assert re.search(said, warning)
+
+
+def test_uncertainties_of_very_unlike_points_hold(project):
+    found = load(with_uncertainties(project, 6.0, 0.007))
+    assert sweep_named(found, NAME).u_Fy[1] == 0.007
+    assert not found.warnings
+
+
+def test_a_column_below_a_millionth_of_the_readings_is_refused(project):
+    error = refusal(with_uncertainties(project, *[1e-12] * len(project.tables[NAME])))
+    assert (error.line, error.column) == (2, "u_Fy_N")
+    assert re.search(r"is not above 0\.00\d+, a millionth of the largest reading, in any row", error.sentence)
+
+
 def test_a_blank_uncertainty_is_not_stated(project):
     found = load(with_uncertainties(project, np.nan))
     assert np.isnan(sweep_named(found, NAME).u_Fy[0])
