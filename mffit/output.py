@@ -13,7 +13,7 @@ import re
 import shutil
 import sys
 import tempfile
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
@@ -40,19 +40,55 @@ class OutputEntry(NamedTuple):
     sha256: tuple[str, ...]  #: two while a run replaces the file: that of the old one and that of the new one
 
 
+class Project(NamedTuple):
+    """The project whose results a folder holds."""
+
+    name: str  #: of its tyre
+    file: str = ""  #: its ``tyre.toml``, in a record relative to the folder; "" for content without a file
+
+    def seen_from(self, folder: Path) -> Project:
+        """The same project with its file relative to a folder."""
+        return self._replace(file=seen_from(folder, Path(self.file)) if self.file else "")
+
+    def is_other(self, recorded: Project, folder: Path) -> bool:
+        """Whether a folder's record is of another project; one whose file was moved or renamed is known by its tyre."""
+        if not recorded.name or (self.file and self.file == recorded.file):
+            return False
+        both = self.file and recorded.file and (folder / recorded.file).is_file()
+        return bool(both) or self.name != recorded.name
+
+
+UNKNOWN = Project("")
+"""The project of a folder without a record of one."""
+
+
+class _Record(NamedTuple):
+    """What a folder's record holds."""
+
+    files: Mapping[str, OutputEntry]  #: by name relative to the folder
+    project: Project = UNKNOWN
+
+
 @contextmanager
 def output_folder(
-    out: Path, *, by: str = "mffit", protected: Iterable[Path] = (), outdated: Collection[str] = ()
+    out: Path,
+    *,
+    by: str = "mffit",
+    of: Project = UNKNOWN,
+    protected: Iterable[Path] = (),
+    outdated: Collection[str] = (),
 ) -> Iterator[Path]:
     """A temporary folder next to ``out`` whose files move to ``out`` only if the block succeeds.
 
     ``by`` is the command that writes; only files of the same command are ever removed. ``protected`` are files that the run
-    reads, ``outdated`` names of files that would be mistaken for this run's output if an earlier run left them.
+    reads.
 
     A file in ``out`` is replaced only if an earlier run wrote it and it is unchanged since (by the record), or if the new
-    content is the same. A file that the run reads is never replaced by other content. Files that the run does not write stay.
-    In folders within ``out`` (``plots``), files that an earlier run of the same command wrote, and this one does not, are
-    removed if they are unchanged.
+    content is the same. A file that the run reads is never replaced by other content, nor removed.
+
+    A folder holds the results of one project: with ``of``, the folder of another one is refused, and unchanged files that an
+    earlier run of the command wrote, and this one does not, are removed. Without ``of`` they are removed from the folders within
+    ``out`` that the run writes to, and those called ``outdated`` from ``out``. All other files stay.
 
     An interrupted or failed run leaves ``out`` unchanged. A killed run leaves its temporary folder, whose name has machine and
     process; the next run to the same place removes it. If the run was killed while its finished files were moving, the record
@@ -63,7 +99,7 @@ def output_folder(
     temporary = _temporary_folder(out)
     try:
         yield temporary
-        _publish(temporary, out, by, protected, outdated)
+        _publish(temporary, out, _Run(by, of.seen_from(out), tuple(protected), outdated))
     except OSError as error:
         if error.errno not in DISK_FULL:
             raise
@@ -86,30 +122,40 @@ def _temporary_folder(out: Path) -> Path:
         raise InputError(f"cannot be written to ({error.strerror}); {ELSEWHERE}", file=parent) from error
 
 
-def _publish(
-    temporary: Path, out: Path, by: str, protected: Iterable[Path], outdated: Collection[str]
-) -> None:
+class _Run(NamedTuple):
+    """A run that writes to a folder; see :func:`output_folder`."""
+
+    by: str
+    of: Project  #: seen from the folder
+    protected: Sequence[Path]
+    outdated: Collection[str]
+
+
+def _publish(temporary: Path, out: Path, run: _Run) -> None:
     """Move the finished files to their places, or raise and leave the output as it was."""
     files = sorted(path for path in temporary.rglob("*") if path.is_file())
     written = {path.relative_to(temporary).as_posix(): digest(path) for path in files}
     recorded = _recorded(out)
-    _refuse(out, written, recorded, protected)
-    stale = _stale(out, by, written, recorded, outdated)
-    kept = {name: entry for name, entry in recorded.items() if name not in stale and (out / name).is_file()}
-    new = {name: OutputEntry(by, (sha256,)) for name, sha256 in written.items()}
+    _refuse(out, written, recorded, run)
+    stale = _stale(out, run, written, recorded)
+    project = run.of if run.of.name else recorded.project
+    kept = {
+        name: entry for name, entry in recorded.files.items() if name not in stale and (out / name).is_file()
+    }
+    new = {name: OutputEntry(run.by, (sha256,)) for name, sha256 in written.items()}
     both = {
-        name: OutputEntry(by, (*entry.sha256, *(kept[name].sha256 if name in kept else ())))
+        name: OutputEntry(run.by, (*entry.sha256, *(kept[name].sha256 if name in kept else ())))
         for name, entry in new.items()
     }
     try:
         out.mkdir(exist_ok=True)
-        _record(temporary, out, recorded | both)
+        _record(temporary, out, _Record({**recorded.files, **both}, project))
         for name in written:
             (out / name).parent.mkdir(exist_ok=True)
             os.replace(temporary / name, out / name)
         for name in stale:
             (out / name).unlink(missing_ok=True)
-        _record(temporary, out, kept | new)
+        _record(temporary, out, _Record(kept | new, project))
     except OSError as error:
         raise InputError(
             f"cannot be written to ({error.strerror}: {error.filename}); close the program that uses it or {ELSEWHERE}",
@@ -117,10 +163,11 @@ def _publish(
         ) from error
 
 
-def _record(temporary: Path, out: Path, entries: Mapping[str, OutputEntry]) -> None:
+def _record(temporary: Path, out: Path, record: _Record) -> None:
     """Replace the record of a folder."""
-    files = {name: ":".join((entry.by, *entry.sha256)) for name, entry in sorted(entries.items())}
-    text = json.dumps({"about": ABOUT, "files": files}, indent=2, ensure_ascii=False) + "\n"
+    files = {name: ":".join((entry.by, *entry.sha256)) for name, entry in sorted(record.files.items())}
+    content = {"about": ABOUT, "project": record.project._asdict(), "files": files}
+    text = json.dumps(content, indent=2, ensure_ascii=False) + "\n"
     (temporary / RECORD).write_text(text, encoding="utf-8")
     os.replace(temporary / RECORD, out / RECORD)
 
@@ -145,14 +192,26 @@ def refuse_unusable(out: Path, *, is_file: bool = False) -> None:
             raise InputError(f"cannot be written to ({error.strerror}); {ELSEWHERE}", file=place) from error
 
 
-def refuse_early(out: Path, names: Collection[str], protected: Iterable[Path] = ()) -> None:
+def refuse_early(
+    out: Path, names: Collection[str], protected: Iterable[Path] = (), of: Project = UNKNOWN
+) -> None:
     """Raise before the work, if the names of the files are known, what :func:`output_folder` would raise after it.
 
-    Raises InputError if ``out`` cannot be written to, or has a file of one of the names that may not be replaced.
+    Raises InputError if ``out`` cannot be written to, is of another project, or has a file of one of the names that may not be
+    replaced.
     """
     refuse_unusable(out)
     if out.is_dir():
-        _refuse(out, dict.fromkeys(names, ""), _recorded(out), protected)
+        run = _Run("", of.seen_from(out), tuple(protected), ())
+        _refuse(out, dict.fromkeys(names, ""), _recorded(out), run)
+
+
+def seen_from(folder: Path, file: Path) -> str:
+    """Path of a file relative to a folder, with slashes; absolute on another drive."""
+    try:
+        return Path(os.path.relpath(file.resolve(), folder.resolve())).as_posix()
+    except ValueError:
+        return file.resolve().as_posix()
 
 
 def written_by(out: Path, by: str) -> frozenset[str]:
@@ -160,7 +219,9 @@ def written_by(out: Path, by: str) -> frozenset[str]:
     try:
         recorded = _recorded(out)
         return frozenset(
-            name for name, entry in recorded.items() if entry.by == by and _is_unchanged(out, name, entry)
+            name
+            for name, entry in recorded.files.items()
+            if entry.by == by and _is_unchanged(out, name, entry)
         )
     except (InputError, OSError):
         return frozenset()
@@ -175,11 +236,13 @@ def _is_unchanged(out: Path, name: str, entry: OutputEntry) -> bool:
     return (out / name).is_file() and digest(out / name) in entry.sha256
 
 
-def _refuse(
-    out: Path, written: Mapping[str, str], recorded: Mapping[str, OutputEntry], protected: Iterable[Path]
-) -> None:
-    """Raise if a file of ``written`` would replace one that must stay."""
-    inputs = [path for path in protected if path.exists()]
+def _refuse(out: Path, written: Mapping[str, str], recorded: _Record, run: _Run) -> None:
+    """Raise if the folder is of another project, or a file of ``written`` would replace one that must stay."""
+    other = recorded.project
+    if run.of.name and run.of.is_other(other, out):
+        of_file = f" ({other.file})" if other.file else ""
+        raise InputError(f"holds results of {other.name}{of_file}; {ELSEWHERE}, or remove it", file=out)
+    inputs = [path for path in run.protected if path.exists()]
     for name, new in written.items():
         target = out / name
         for folder in list(target.parents)[: len(PurePosixPath(name).parents) - 1]:
@@ -195,7 +258,7 @@ def _refuse(
                 f"is not a file, but the output writes a file of this name; move it away or {ELSEWHERE}",
                 file=target,
             )
-        reason = _reason_to_keep(target, new, recorded.get(name), inputs)
+        reason = _reason_to_keep(target, new, recorded.files.get(name), inputs)
         if reason:
             raise InputError(reason, file=target)
 
@@ -216,37 +279,35 @@ def _reason_to_keep(target: Path, new: str, entry: OutputEntry | None, inputs: I
     return ""
 
 
-def _stale(
-    out: Path,
-    by: str,
-    written: Mapping[str, str],
-    recorded: Mapping[str, OutputEntry],
-    outdated: Collection[str],
-) -> list[str]:
-    """Unchanged files of an earlier run of this command that this run did not write again.
+def _stale(out: Path, run: _Run, written: Mapping[str, str], recorded: _Record) -> list[str]:
+    """Unchanged files of an earlier run of this command that this run neither wrote again nor reads.
 
-    All in the folders that this run wrote to; outside them only those called ``outdated``.
+    All if both are of one project; else those in the folders that this run wrote to, and those called outdated.
     """
+    together = bool(run.of.name and recorded.project.name)
     folders = {PurePosixPath(name).parent for name in written} - {PurePosixPath(".")}
+    inputs = {path.resolve() for path in run.protected}
     return [
         name
-        for name, entry in recorded.items()
+        for name, entry in recorded.files.items()
         if name not in written
-        and (PurePosixPath(name).parent in folders or name in outdated)
-        and entry.by == by
+        and (together or PurePosixPath(name).parent in folders or name in run.outdated)
+        and entry.by == run.by
         and _is_unchanged(out, name, entry)
+        and (out / name).resolve() not in inputs
     ]
 
 
-def _recorded(out: Path) -> dict[str, OutputEntry]:
-    """Files that earlier runs wrote, by name relative to ``out``; a file called RECORD that is not a record is refused."""
+def _recorded(out: Path) -> _Record:
+    """The record of ``out``, empty without one; a file called RECORD that is not a record is refused."""
     path = out / RECORD
     try:
-        files = json.loads(path.read_text(encoding="utf-8"))["files"]
-        parts = {name: text.split(":") for name, text in files.items()}
-        return {name: OutputEntry(by, tuple(sha256)) for name, (by, *sha256) in parts.items()}
+        content = json.loads(path.read_text(encoding="utf-8"))
+        parts = {name: text.split(":") for name, text in content["files"].items()}
+        files = {name: OutputEntry(by, tuple(sha256)) for name, (by, *sha256) in parts.items()}
+        return _Record(files, Project(**content.get("project", UNKNOWN._asdict())))
     except FileNotFoundError:
-        return {}
+        return _Record({})
     except (OSError, ValueError, LookupError, TypeError, AttributeError):
         raise InputError(
             "is not the record of written files that mffit keeps under this name; move it away", file=path

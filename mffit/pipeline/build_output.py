@@ -15,10 +15,9 @@ from mffit.comparison.characteristics import characteristics
 from mffit.config import Config
 from mffit.config.toml_file import toml_text
 from mffit.csv_tables import write_csv
-from mffit.fit import name_at_temperature
 from mffit.numbers import Numbers, to_json
 from mffit.output import output_folder
-from mffit.pipeline.inputs import inputs_of
+from mffit.pipeline.inputs import inputs_of, project_of
 from mffit.points import Points
 from mffit.points.stretch import StretchNote, stretch_table
 from mffit.quantities import COMPARED, column
@@ -43,15 +42,12 @@ def write_build(
 ) -> None:
     """Write every output of a build, or nothing.
 
-    ``stretches`` of recordings go to ``stretches.csv``. Without report, page and plots of an earlier build are removed.
+    ``stretches`` of recordings go to ``stretches.csv``.
     """
     from mffit.report import text
 
-    name = result.config.tyre.name
-    siblings = [*(f"{name}-{use}.tir" for use in USES), name_at_temperature(name), result.correction_name]
-    if not with_report:
-        siblings += [REPORT, *(f"plots/{path.name}" for path in (out / "plots").glob("*.png"))]
-    with output_folder(out, by="build", protected=inputs_of(result.config), outdated=siblings) as folder:
+    config = result.config
+    with output_folder(out, by="build", of=project_of(config), protected=inputs_of(config)) as folder:
         for use, name in result.files.items():
             result.tyres[use].write(folder / name)
         as_json.write(folder / "result.json", result)
@@ -66,7 +62,7 @@ def write_build(
             prediction.write_correction(folder / result.correction_name, result.correction, fitted)
         if stretches:
             write_csv(stretch_table(stretches), folder / "stretches.csv")
-        (folder / "resolved.toml").write_bytes(resolved_text(result.config, out))
+        (folder / "resolved.toml").write_bytes(resolved_text(config, out))
         write_members(result, folder)
         if with_report:
             from mffit import report

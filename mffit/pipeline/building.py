@@ -21,7 +21,15 @@ from mffit.measured import Measured
 from mffit.output import refuse_early
 from mffit.parts import Parts
 from mffit.pipeline.build_output import WRITTEN, write_build
-from mffit.pipeline.inputs import base_notes, base_warnings, input_hashes, inputs_of, read_base, read_points
+from mffit.pipeline.inputs import (
+    base_notes,
+    base_warnings,
+    input_hashes,
+    inputs_of,
+    project_of,
+    read_base,
+    read_points,
+)
 from mffit.pipeline.judging import judged
 from mffit.pipeline.left_out import left_out_by_fit
 from mffit.pipeline.measuring import measure, said
@@ -79,7 +87,7 @@ def build(
     parts, before = measure(config, read.reading.points, read.base)
     if out is not None:
         names = (*_names(config).values(), f"{config.tyre.name}{CORRECTION}", *WRITTEN)
-        refuse_early(Path(out), names, inputs_of(config))
+        refuse_early(Path(out), names, inputs_of(config), project_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
         measured, fitted = fit_and_measure(config, read.reading, parts, before, read.base, progress)
         progress(JUDGING)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -21,9 +20,9 @@ from mffit.diagnosis.result import WITH_TERMS
 from mffit.diagnosis.strangers import another_tyre
 from mffit.effects import CATALOG, Effect
 from mffit.made import made
-from mffit.output import digest, output_folder, refuse_early
+from mffit.output import UNKNOWN, Project, digest, output_folder, refuse_early, seen_from
 from mffit.pipeline.building import build
-from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
+from mffit.pipeline.inputs import input_hashes, inputs_of, project_of, read_base, read_points
 from mffit.pipeline.left_out import left_out_by_diagnosis
 from mffit.pipeline.measuring import epsilon_gamma, without_play
 from mffit.pipeline.provenance import fitted_to, known_of_model, marked, rig_of_build, use_of
@@ -72,13 +71,13 @@ def diagnose(
     read = [*inputs_of(config), last_build(config), *([Path(model)] if isinstance(model, str | Path) else [])]
     if out is not None:
         names = (f"{config.tyre.name}.tir", f"{config.tyre.name}{WITH_TERMS}", *WRITTEN)
-        refuse_early(Path(out), names, read)
+        refuse_early(Path(out), names, read, project_of(config))
     chosen = chosen_model(config, model, progress)
     with threadpool_limits(1):
         found = _explained(config, reading, chosen, effects, repair_all=repair_all, progress=progress)
     diagnosis = _stated(config, reading, found, chosen, out)
     if out is not None:
-        write_diagnosis(diagnosis, Path(out), protected=read)
+        write_diagnosis(diagnosis, Path(out), project_of(config), protected=read)
     return diagnosis
 
 
@@ -144,10 +143,7 @@ def _seen_from(out: str | Path | None, file: Path | None) -> str:
         return "the given model"
     if out is None:
         return file.as_posix()
-    try:
-        return Path(os.path.relpath(file.resolve(), Path(out).resolve())).as_posix()
-    except ValueError:  # on another drive
-        return file.resolve().as_posix()
+    return seen_from(Path(out), file)
 
 
 class ChosenModel(NamedTuple):
@@ -195,12 +191,13 @@ def _redone(
     return (DirectMethodRedone(causes, before, epsilon_gamma(without_play(config), corrected, base)),)
 
 
-def write_diagnosis(diagnosis: Diagnosis, out: Path, protected: Iterable[Path] = ()) -> None:
+def write_diagnosis(
+    diagnosis: Diagnosis, out: Path, of: Project = UNKNOWN, protected: Iterable[Path] = ()
+) -> None:
     """Write every output of a diagnosis, or nothing; the ``protected`` files, which were read, are not replaced."""
     from mffit import report
 
-    files = (f"{diagnosis.name}.tir", f"{diagnosis.name}{WITH_TERMS}")
-    with output_folder(out, by="diagnose", protected=protected, outdated=files) as folder:
+    with output_folder(out, by="diagnose", of=of, protected=protected) as folder:
         if diagnosis.delivers or diagnosis.written_anyway:
             diagnosis.tyre.write(folder / diagnosis.model_after)
         if diagnosis.with_terms is not None:

@@ -14,7 +14,7 @@ from mffit.config.models import given_values
 from mffit.errors import InputError
 from mffit.fit.at_nominal import CONDITIONS, Nominal, tyre_at_nominal
 from mffit.fit.same_curve import tyre_in_one_form
-from mffit.output import digest
+from mffit.output import Project, digest
 from mffit.points.loading import Reading
 from mffit.sheets import file_of, sheet_of
 from mffit.suspicion import before_the_fit
@@ -162,6 +162,11 @@ def inputs_of(config: Config) -> list[Path]:
     """Every file that a command reads for this configuration."""
     files = [config.folder / name for name in input_names(config)]
     return files if config.path is None else [config.path, *files]
+
+
+def project_of(config: Config) -> Project:
+    """The project of a configuration, for the record of its output folder."""
+    return Project(config.tyre.name, "" if config.path is None else str(config.path))
 
 
 def input_hashes(config: Config) -> dict[str, str]:

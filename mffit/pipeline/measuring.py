@@ -23,7 +23,7 @@ from mffit.measured.direct import Judge
 from mffit.measured.result import NO_FIT, AfterFit, MeasuredFacts, SpinStatement
 from mffit.output import output_folder
 from mffit.parts import Parts
-from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
+from mffit.pipeline.inputs import input_hashes, inputs_of, project_of, read_base, read_points
 from mffit.points import Points
 from mffit.points.loading import Reading
 from mffit.suspicion import JudgedMeasurement, Trust, judge
@@ -51,7 +51,8 @@ def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None
     config = configuration.load(config)
     measured = spin_of(config, read_points(config), made(input_hashes(config)))
     if out is not None:
-        with output_folder(Path(out), by="spin", protected=inputs_of(config)) as folder:
+        of = project_of(config)
+        with output_folder(Path(out), by="spin", of=of, protected=inputs_of(config)) as folder:
             as_json.write(folder / "spin.json", measured)
     return measured
 

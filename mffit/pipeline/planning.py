@@ -20,7 +20,7 @@ from mffit.measured import Measured
 from mffit.measured.result import AfterFit
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.building import build
-from mffit.pipeline.inputs import inputs_of, read_base
+from mffit.pipeline.inputs import inputs_of, project_of, read_base
 from mffit.pipeline.measuring import epsilon_gamma, measure
 from mffit.pipeline.refining import spin_of_model, undistorted
 from mffit.planning import (
@@ -78,7 +78,7 @@ def plan(
     aim = _aim(config, goal)  # an unknown goal or kind ends the command before the work begins
     excluded = [addition_named(word) for word in without]
     if out is not None:
-        refuse_early(Path(out), WRITTEN, inputs_of(config))
+        refuse_early(Path(out), WRITTEN, inputs_of(config), project_of(config))
     found = plan_of(build(config, progress=progress), aim, runs=runs, without=excluded, progress=progress)
     if out is not None:
         progress("writing the page")
@@ -166,15 +166,16 @@ def write_plan(found: Plan, out: Path) -> None:
     """Write every output of a plan, or nothing: the page, the numbers, and a sheet of set-points per run."""
     from mffit import report
 
-    with output_folder(out, by="plan", protected=inputs_of(found.config)) as folder:
+    config = found.config
+    with output_folder(out, by="plan", of=project_of(config), protected=inputs_of(config)) as folder:
         as_json.write(folder / "plan.json", found)
         runs = [step.run for step in found.steps]
         if runs:
             (folder / SHEETS).mkdir()
-            text = additions(found.config, runs)
+            text = additions(config, runs)
             (folder / SHEETS / "tyre-additions.toml").write_text(text, encoding="utf-8")
         for run in runs:
-            table = sheet(found.config, run.points, run.addition.measures)
+            table = sheet(config, run.points, run.addition.measures)
             write_csv(table, folder / SHEETS / f"{run.name}.csv")
         report.write_plan(found, folder)
 

@@ -415,7 +415,7 @@ def _credible(source: _Source, u: np.ndarray, readings: np.ndarray) -> np.ndarra
     """
     limit = constants.SMALLEST_U_OF_READINGS * float(np.nanmax(np.abs(readings), initial=0.0))
     if not np.any(u > limit):
-        least = "zero" if np.all(u <= 0.0) else f"{limit:.2g}, a millionth of the largest reading,"
+        least = "zero" if np.all(u <= 0.0) else f"{limit:.2g}, a ten-millionth of the largest reading,"
         sentence = f"is not above {least} in any row, as a standard uncertainty must be; complete or remove the column"
         raise source.refusal(sentence, int((u <= limit).argmax()))
     limit = max(limit, constants.SMALLEST_U_OF_OTHERS * float(np.median(u[u > limit])))

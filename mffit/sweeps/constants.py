@@ -6,7 +6,7 @@ from tir.constant import Count, Real
 
 SMALLEST_LOAD_IN_NEWTONS = Real(20.0, "N", "If all loads of a file are below this, they are in kilonewtons.")
 SMALLEST_U_OF_READINGS = Real(
-    1e-6,
+    1e-7,
     "-",
     "Standard uncertainty over the largest reading that no rig reaches: national standards of force realise 2e-5.",
 )

@@ -20,16 +20,16 @@ import mffit
 from mffit import config
 from mffit.cli import commands
 from mffit.errors import InputError
-from mffit.output import RECORD, output_folder, refuse_early
+from mffit.output import RECORD, UNKNOWN, Project, output_folder, refuse_early
 from mffit.pipeline.inputs import input_hashes, read_base
 from mffit.virtual_rig import load_plan, simulate
 
 SAMPLE = Path(__file__).parents[2] / "samples" / "front-120-70"
 
 
-def write(out: Path, by: str = "build", protected=(), **contents: str) -> None:
+def write(out: Path, by: str = "build", protected=(), of: Project = UNKNOWN, **contents: str) -> None:
     """A run that writes ``plots__a=...`` to plots/a."""
-    with output_folder(out, by=by, protected=protected) as folder:
+    with output_folder(out, by=by, of=of, protected=protected) as folder:
         for name, text in contents.items():
             path = folder / name.replace("__", "/")
             path.parent.mkdir(exist_ok=True)
@@ -92,6 +92,46 @@ def test_only_stale_pictures_are_removed(tmp_path):
     assert set(snapshot(out)) == {
         RECORD, "a", "b", "plots/edited", "plots/foreign", "plots/kept", "plots/other",
     }  # fmt: skip
+
+
+def project_in(tmp_path: Path, file: str, name: str = "front") -> Project:
+    (tmp_path / file).parent.mkdir(exist_ok=True)
+    (tmp_path / file).touch()
+    return Project(name, str(tmp_path / file))
+
+
+def test_a_run_replaces_all_that_an_earlier_one_of_its_project_wrote(tmp_path):
+    out, of = tmp_path / "out", project_in(tmp_path, "tyre.toml")
+    write(out, of=of, old="1", edited="1", read="1", drawn__a="1", kept="1")
+    write(out, by="diagnose", of=of, diagnosis="1")
+    write(out, by="export", code="1")
+    (out / "edited").write_text("mine")
+    write(out, of=of._replace(name="renamed"), protected=[out / "read"], kept="2")
+    assert set(snapshot(out)) == {RECORD, "edited", "read", "kept", "diagnosis", "code"}
+    assert (out / "kept").read_text() == "2"
+
+
+@pytest.mark.parametrize("by", ["build", "diagnose"])
+@pytest.mark.parametrize("other", [("b/tyre.toml", "front"), ("a/other.toml", "front"), ("", "rear")])
+def test_the_folder_of_another_project_is_refused(tmp_path, by, other):
+    out, (file, name) = tmp_path / "a" / "out", other
+    write(out, of=project_in(tmp_path, "a/tyre.toml"), a="1")
+    write(out, by="export", code="1")
+    foreign = project_in(tmp_path, file, name) if file else Project(name)
+    assert_kept(out, r"out: holds results of front \(\.\./tyre\.toml\)", by=by, of=foreign, b="1")
+    with pytest.raises(InputError, match="name another folder with --out"):
+        refuse_early(out, ["b"], of=foreign)
+
+
+def test_a_project_that_was_renamed_or_moved_is_known_by_its_tyre(tmp_path):
+    out = tmp_path / "out"
+    of = project_in(tmp_path, "tyre.toml")
+    write(out, of=of, a="1")
+    Path(of.file).rename(tmp_path / "front.toml")
+    write(out, of=project_in(tmp_path, "front.toml"), b="1")
+    assert set(snapshot(out)) == {RECORD, "b"}
+    write(out, of=Project("front"), c="1")
+    assert set(snapshot(out)) == {RECORD, "c"}
 
 
 @pytest.mark.parametrize("made", ["a/", "plots"])
@@ -249,6 +289,14 @@ def test_build_checks_all_its_property_files_before_the_fit(project, monkeypatch
     monkeypatch.setattr("mffit.fit.fit", lambda *given: pytest.fail("fitted before it was refused"))
     with pytest.raises(InputError, match="toy-normal"):
         mffit.build(project.write(), project.folder)
+
+
+@pytest.mark.parametrize("command", ["build", "diagnose", "plan", "spin"])
+def test_no_command_mixes_two_projects_in_a_folder(project, capsys, tmp_path, command):
+    path, out = project.write(), tmp_path / "out"
+    write(out, of=project_in(tmp_path, "rear.toml", "rear"), **{"rear.tir": "1"})
+    model = ["--model", SAMPLE / "true.tir"] if command == "diagnose" else []
+    assert_command_refused(capsys, tmp_path, "holds results of rear", command, path, *model, "--out", out)
 
 
 def test_diagnose_does_not_replace_its_model(project, capsys):
