@@ -11,7 +11,13 @@ from scipy.special import chdtrc
 from mffit.as_json import keys
 from mffit.config import Config
 from mffit.config.rig_declaration import declared_rig
-from mffit.constants import COVERAGE_FACTOR_95, EXPLAINED_SHARE, FALSE_ALARM, USUAL_CORNERING_STIFFNESS
+from mffit.constants import (
+    COVERAGE_FACTOR_95,
+    EXPLAINED_SHARE,
+    FALSE_ALARM,
+    TWO_SIGMA,
+    USUAL_CORNERING_STIFFNESS,
+)
 from mffit.fit.plan import channels_of
 from mffit.linearised.gaussian import Informed
 from mffit.points import Points
@@ -31,11 +37,13 @@ class ExplainedByRig:
 
     errors: Mapping[str, Quantity]
     """Those that differ from what is declared, in units of their key, the clearest first."""
+    beyond: tuple[str, ...]  #: those of these that are larger than declared, the farthest first
     left: Mapping[str, float]  #: rms of every channel that remains with them
     share: float  #: of what exceeds the noise, the part (of chi-square) that they leave
     is_noise: bool  #: whether chance alone makes such a gap
     is_plausible: bool  #: whether errors of this size agree with what is declared
     leaves_noise: bool  #: whether chance alone makes what remains
+    of_formula: bool = False  #: whether what the build of the file states that it misses counts as noise
 
     @property
     def suffices(self) -> bool:
@@ -43,12 +51,17 @@ class ExplainedByRig:
         return self.is_plausible and self.leaves_noise
 
     @property
+    def fits(self) -> bool:
+        """Whether errors of any size explain most of the gap."""
+        return self.leaves_noise or self.share < EXPLAINED_SHARE
+
+    @property
     def mostly(self) -> bool:
         """Whether the errors explain most of the gap."""
-        return self.is_plausible and (self.leaves_noise or self.share < EXPLAINED_SHARE)
+        return self.is_plausible and self.fits
 
 
-keys(ExplainedByRig, "errors left share is_noise suffices mostly")
+keys(ExplainedByRig, "errors beyond left share is_noise suffices mostly")
 
 
 def declared_errors(config: Config, setups: Sequence[str], channels: Collection[str]) -> dict[str, float]:
@@ -65,11 +78,15 @@ def declared_errors(config: Config, setups: Sequence[str], channels: Collection[
 
 
 def explained_by_rig(
-    points: Points, simulation: Simulation, declared: Mapping[str, float]
+    points: Points,
+    simulation: Simulation,
+    declared: Mapping[str, float],
+    missed: Mapping[str, float] | None = None,
 ) -> ExplainedByRig | None:
     """How far errors of the rig explain the readings; None if none is declared.
 
-    ``declared`` has the standard uncertainty of each error by name, in its unit.
+    ``declared`` has the standard uncertainty of each error by name, in its unit; ``missed``, by channel, the rms by which the
+    file is known to miss readings, which counts as noise.
     """
     if not declared:
         return None
@@ -80,6 +97,7 @@ def explained_by_rig(
     gap, columns = [], []
     for name, rest in apart.items():
         u = np.where(stating(points.u(name)), points.u(name), silent[name])
+        u = np.hypot(u, (missed or {}).get(name, 0.0))
         known = np.isfinite(rest) & stating(u)
         gap.append(rest[known] / u[known])
         columns.append(slopes[name][known] * spread / u[known, None])
@@ -92,11 +110,17 @@ def explained_by_rig(
         for name, x, u_x, u in zip(declared, size, found.u, spread, strict=True)
         if abs(x) > COVERAGE_FACTOR_95 * u_x
     }
+    errors = dict(sorted(errors.items(), key=lambda item: -abs(item[1].value) / item[1].u))
+    over = {name: abs(one.value) / declared[name] for name, one in errors.items()}
     return ExplainedByRig(
-        errors=dict(sorted(errors.items(), key=lambda item: -abs(item[1].value) / item[1].u)),
+        errors=errors,
+        beyond=tuple(
+            sorted((name for name in errors if over[name] > TWO_SIGMA), key=lambda name: -over[name])
+        ),
         left={name: rms(rest - slopes[name] @ (size * spread)) for name, rest in apart.items()},
         share=max(after - n, 0.0) / max(before - n, 1.0),
         is_noise=bool(chdtrc(n, before) > FALSE_ALARM),
         is_plausible=bool(chdtrc(len(size), size @ size) > FALSE_ALARM),
         leaves_noise=bool(chdtrc(n, after) > FALSE_ALARM),
+        of_formula=bool(missed),
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import compress
 
 import numpy as np
@@ -40,6 +40,8 @@ class ComparedSubject:
     build: Specimen | None = None  #: the build that wrote the file with this covariance
     #: Predictor of its build, and the fitted model of the build; None if unknown.
     foretold: tuple[Predictor, Tyre] | None = None
+    missed: Mapping[str, float] = field(default_factory=dict)
+    """By channel, the rms [N], [Nm] by which the file misses the readings of its build beyond their noise, as that states."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -83,15 +83,18 @@ def rig_or_tyre(found: ExplainedByRig, *, fitted: bool) -> str:
 
     ``fitted``: whether the file was fitted to these readings; then what the rig leaves is the misfit of that fit.
     """
+    noise = "noise and what the formula misses by the build of the file" if found.of_formula else "noise"
     if found.is_noise:
-        return "That is noise: nothing is left to explain."
+        return f"That is {noise}: nothing is left to explain."
     left = listed(
         [f"{number(size, digits=3)} {CHANNELS[name].unit} in {name}" for name, size in found.left.items()]
     )
     named = listed([f"{words_of(name)} {_shown(name, one)}" for name, one in found.errors.items()])
     errors = f" ({named})" if named else ""
     if found.suffices:
-        return f"It can be the rig: errors of the size that is declared{errors} leave {left}, which is noise."
+        return (
+            f"It can be the rig: errors of the size that is declared{errors} leave {left}, which is {noise}."
+        )
     if fitted:
         return (
             f"The file was fitted to these points: errors of the rig{errors} leave {left}, which is the misfit of the fit; the "
@@ -100,6 +103,9 @@ def rig_or_tyre(found: ExplainedByRig, *, fitted: bool) -> str:
     rest = "the rest is the tyre, or an error that is not declared: mffit diagnose names it"
     if found.mostly:
         return f"Most of it can be the rig: errors of the size that is declared{errors} leave {left}; {rest}."
+    if found.fits and found.beyond:
+        worse = some([f"{words_of(name)} {_shown(name, found.errors[name])}" for name in found.beyond])
+        return f"It is the tyre, or the rig is worse than declared ({worse}), which leaves {left}; mffit diagnose tries both."
     if not found.is_plausible:
         return "It is not the rig as declared: its errors would have to be far larger; mffit diagnose names what is missing."
     return f"It is not the rig as declared: its errors would leave {left}; {rest}."

@@ -21,7 +21,13 @@ from mffit.measured import LoadResult
 from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of, read_base, read_points
 from mffit.pipeline.measuring import measure, without_play
-from mffit.pipeline.provenance import fitted_to, posterior_of, temperature_of, use_of
+from mffit.pipeline.provenance import (
+    fitted_to,
+    missed_by_file,
+    posterior_of,
+    temperature_of,
+    use_of,
+)
 from mffit.points import Points
 from mffit.progress import READING, Progress, silent
 from mffit.rig import Simulation
@@ -105,7 +111,7 @@ def _subject(path: Path, given: Mapping[str, float]) -> ComparedSubject:
     if posterior is None:
         return subject
     known = None if build is None else build.numbers
-    subject = replace(subject, known=known, build=build)
+    subject = replace(subject, known=known, build=build, missed=missed_by_file(tyre, path))
     try:
         foretold, _, fitted = prediction.load(path.parent)
     except InputError:  # of an earlier version
@@ -164,7 +170,7 @@ def _with_data(subject: ComparedSubject, config: Config) -> Comparison:
     declared = declared_errors(config, points.used_setups, channels_of(points))
     found = against_points(subject, simulation, points, measured, of_file, name)
     own = subject.known is not None and fitted_to(subject.tyre, config)
-    found = replace(found, by_rig=explained_by_rig(points, simulation, declared), fitted=own)
+    found = replace(found, by_rig=explained_by_rig(points, simulation, declared, subject.missed), fitted=own)
     if not warm:
         return found
     return replace(found, notes=(*found.notes, note_on_temperature(subject.name, warm[T_REF])))

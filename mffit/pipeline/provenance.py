@@ -161,6 +161,11 @@ def posterior_of(tyre: Tyre, path: Path) -> Inexactness | None:
     return _posterior(_result_of(tyre, path))
 
 
+def missed_by_file(tyre: Tyre, path: Path) -> dict[str, float]:
+    """By channel, what the build that wrote a file states that it misses; empty if no build did or the file was edited."""
+    return _left(_result_of(tyre, path))
+
+
 def _result_of(tyre: Tyre, path: Path) -> dict[str, Any]:
     """The result of the build that wrote a file; empty if no build did or the file was edited."""
     try:

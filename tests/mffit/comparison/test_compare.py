@@ -328,7 +328,9 @@ def test_a_file_is_compared_with_data(folder, stiffer, tmp_path):
     readings = wrong.simulation.readings(wrong.points)
     apart = {c: wrong.points.channel(c) - read for c, read in readings.items()}
     Fy, Mz = (f"{np.sqrt(np.nanmean(gap**2)):.3g}" for gap in apart.values())
-    assert f" by {Fy} N rms in Fy and {Mz} Nm rms in Mz. It is not the rig as" in wording.headline(wrong)
+    assert f" by {Fy} N rms in Fy and {Mz} Nm rms in Mz. It is the tyre, or the rig is" in wording.headline(
+        wrong
+    )
     assert "differ significantly: measured cornering stiffness" in wording.headline(wrong)
     # The same sign by sweep.
     for gap in wrong.sweeps:
@@ -345,7 +347,11 @@ DECLARED = {"F0_N": 10.0, "gamma_0_deg": 0.5, "gain": 0.005}
         ({}, "That is noise", set()),
         ({"F0_N": 12.0, "gamma_0_deg": -0.6}, "It can be the rig", {"F0_N", "gamma_0_deg"}),
         ({"PKY1": 1.1 * truth()["PKY1"]}, "It is not the rig as declared", None),
-        ({"gain": 1.1}, "It is not the rig as declared: its errors would have to be far larger", None),
+        (
+            {"gain": 1.1},
+            "It is the tyre, or the rig is worse than declared (calibration of Fy 0.0",
+            None,
+        ),
     ],
 )
 def test_a_gap_is_said_to_be_of_the_rig_or_of_the_tyre(folder, hidden, said, named):
@@ -519,3 +525,24 @@ def test_a_declared_path_radius_moves_a_build_as_stated(tmp_path):
     u = {name: row["stderr"] for table in ("coefficients", "rig") for name, row in result[table].items()}
     for name, before in zip(first.names, first.values, strict=True):
         assert found[name] - before == pytest.approx(stated[name], abs=0.1 * (u.get(name) or math.inf)), name
+
+
+def test_what_a_build_says_of_its_own_file_needs_no_rig(folder):
+    """A miss of 20 N over sideslip, and an axis 1.1 deg off where 0.3 deg are declared."""
+    found = mffit.compare(SAMPLE / "true.tir", folder / "tyre.toml")
+    rng = np.random.default_rng(5)
+    read = found.simulation.with_numbers({"alpha_0_deg": 1.1}).readings(found.points)
+    missed = 20.0 * np.sqrt(2.0) * np.sin(np.degrees(found.points.alpha))
+    noisy = {name: x + rng.normal(size=len(x)) * found.points.u(name) for name, x in read.items()}
+    points = found.points.replace(**{**noisy, "Fy": noisy["Fy"] + missed})
+    known = explained_by_rig(points, found.simulation, {**DECLARED, "alpha_0_deg": 0.3}, {"Fy": 25.0})
+    said = wording.rig_or_tyre(known, fitted=False)
+    assert re.search(r"the rig is worse than declared \(sideslip axis misaligned 1\.\d+ ± \S+ deg", said)
+    assert known.beyond[0] == "alpha_0_deg"
+    straight = points.replace(Fy=found.simulation.readings(points).Fy + missed)
+    without, within = (
+        explained_by_rig(straight.replace(Mz=np.nan), found.simulation, DECLARED, known)
+        for known in ({}, {"Fy": 25.0})
+    )
+    assert not without.is_noise
+    assert "is noise and what the formula misses" in wording.rig_or_tyre(within, fitted=False)
