@@ -17,6 +17,11 @@ POINTS_EXAMINED = Count(
 DIVISIONS_OF_A_SWEEP = Count(
     12, "-", "Shortest length of a smooth function along what is swept, as a part of its range."
 )
+FINER = Count(
+    3,
+    "-",
+    "Part of that length in which all sweeps may share what is then no noise: tests have 25 settings, close where a tyre bends.",
+)
 STEPS_OF_A_SWEEP = Real(
     1.5,
     "-",

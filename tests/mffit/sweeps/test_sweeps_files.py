@@ -315,7 +315,9 @@ def test_uncertainties_of_very_unlike_points_hold(project):
 def test_a_column_below_a_ten_millionth_of_the_readings_is_refused(project):
     error = refusal(with_uncertainties(project, *[1e-12] * len(project.tables[NAME])))
     assert (error.line, error.column) == (2, "u_Fy_N")
-    assert re.search(r"is not above [\d.e-]+, a ten-millionth of the largest reading, in any row", error.sentence)
+    assert re.search(
+        r"is not above [\d.e-]+, a ten-millionth of the largest reading, in any row", error.sentence
+    )
 
 
 def test_a_blank_uncertainty_is_not_stated(project):
