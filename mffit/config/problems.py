@@ -80,7 +80,7 @@ def _mistake(detail: ErrorDetails, lines: dict[str, int], known: Keys) -> _Mista
         return _Mistake(key, line, _sentence(detail, key, lines))
     table, name = _split(key, known)
     near = meant(name, known.get(table, ()))
-    if not near:
+    if not near or any(name in keys for keys in known.values()):
         return _Mistake(key, line, _unknown(table, name, known), is_unknown=True)
     place = f"{key.rpartition('.')[0]}.{near}".lstrip(".")
     return _Mistake(key, line, f'is unknown; did you mean "{near}"?', is_unknown=True, meant=place)

@@ -138,7 +138,7 @@ class LinearisedChannel(ReadOnlyArrays):
         """Gain of log evidence by a noise beyond the stated one.
 
         Few readings cannot tell noise from model error that bends between them, which the best model at the stated noise has
-        in its place. Nor is it noise what all sweeps have in common in finer steps, in which a tyre bends where it begins to slide.
+        in its place. Nor is it noise what all sweeps have in common in finer steps: a tyre bends fast where it begins to slide.
         """
         others = (
             terms.evidence(terms.most_probable(self.unit, self.components, most_noise=1.0))

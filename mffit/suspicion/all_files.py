@@ -8,7 +8,14 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import FEWEST, HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, STRAIGHT, UPRIGHT
+from mffit.constants import (
+    CAMBER_OF_SLOPES,
+    FEWEST,
+    HOTTEST_TREAD,
+    NOMINAL_OVER_HIGHEST_LOAD,
+    STRAIGHT,
+    UPRIGHT,
+)
 from mffit.points import Points, levels
 from mffit.suspicion import constants
 from mffit.suspicion.groups import readings_of
@@ -23,6 +30,7 @@ from mffit.suspicion.slopes import (
     overturning_slope,
     pooled,
     signatures,
+    slope,
 )
 from tir.constants import NEGLIGIBLE_SHARE
 
@@ -102,6 +110,23 @@ def moment_reversed(points: Points, config: Config) -> Iterator[Facts]:
     """Slope of Mx over camber."""
     if overturning_slope(points).sign > 0:
         yield {}
+
+
+@rule(
+    id="angles-exchanged",
+    outcome=Outcome.WARNED,
+    sentence="Fy_N changes {ratio:.0f} times as fast with gamma_deg as with alpha_deg, and on every known tyre slower: are both "
+    "exchanged?",
+)
+def angles_exchanged(points: Points, config: Config) -> Iterator[Facts]:
+    """Slope of Fy over camber, over that over sideslip; rolling forwards, both within the same range."""
+    within = (
+        np.maximum(np.abs(points.alpha), np.abs(points.gamma)) <= CAMBER_OF_SLOPES.rad
+    ) & points.free_rolling
+    used = within & (points.direction > 0) & (points.mount > 0)
+    sideslip, camber = (slope(points, points.Fy, angle, used) for angle in ("alpha", "gamma"))
+    if abs(camber.value) - camber.clear > abs(sideslip.value) + sideslip.clear:
+        yield {"ratio": camber.value / sideslip.value}
 
 
 @rule(

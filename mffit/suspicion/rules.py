@@ -50,6 +50,7 @@ RULES: tuple[Rule, ...] = (
     all_files.one_sided_on_disc,
     all_files.no_zero_on_disc,
     all_files.moment_reversed,
+    all_files.angles_exchanged,
     all_files.weak_turn_slip,
     all_files.nominal_load_of_others,
     all_files.hot_tread,

@@ -66,6 +66,12 @@ class _Source(NamedTuple):
     def cells(self) -> Cells:
         return self.raw.column(self.heading)
 
+    @property
+    def unit(self) -> str:
+        """The unit that ``tyre.toml`` names, else that of the file; "" if neither states one."""
+        named = None if self.mapped is None else self.mapped.unit
+        return named or self.raw.unit(self.heading)
+
     def refusal(self, sentence: str, row: int) -> InputError:
         """The error about a cell of this column."""
         line = int(self.raw.lines[row])
@@ -367,7 +373,7 @@ def _in_contract_unit(source: _Source, values: np.ndarray) -> np.ndarray:
     """Values in the contract's unit, from the unit that ``tyre.toml`` names, else from that of the file."""
     channel, mapped = source.channel, source.mapped
     scale, named = (1.0, None) if mapped is None else (mapped.scale, mapped.unit)
-    unit = named or source.raw.unit(source.heading)
+    unit = source.unit
     if not unit:
         return scale * values
     try:
@@ -395,6 +401,8 @@ def _in_range(source: _Source, values: np.ndarray) -> np.ndarray:
         return np.where(outside, np.nan, values)
     hint = channel.below if values[row] < channel.lower else channel.above
     remedy = f"{hint}, convert it or name its unit under [sweep.columns]" if hint else "correct it"
+    if stated := source.unit:
+        remedy = f'its unit is stated as "{stated}"; correct the unit or the value'
     raise source.refusal(f"{sentence}; {remedy}", row)
 
 

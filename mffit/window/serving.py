@@ -80,6 +80,8 @@ def _opened(paths: Sequence[Path]) -> Opened:
         raise InputError(
             "opens one project at a time; give this file alone, or property files only", file=first
         )
+    if not first.exists():
+        raise InputError("does not exist; name a tyre.toml, property files or a folder", file=first)
     if first.is_dir() and not (first / PROJECT).exists():
         return Opened(folder=RecordingsFolder(first), reading=ReadingProcess())
     session = Session(first / PROJECT if first.is_dir() else first)

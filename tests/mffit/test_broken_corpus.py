@@ -89,10 +89,11 @@ def words(old: str, new: str) -> Change:
     return change
 
 
-def column(file: str = SWEEP, **made: Any) -> Change:
-    """Replaces columns of one file by a value, or by a function of the column."""
+def column(file: str = SWEEP, columns: dict[str, Any] | None = None, **made: Any) -> Change:
+    """Replaces columns of one file by a value, or by a function of the column; ``columns`` are [columns] of tyre.toml."""
 
     def change(project: Project) -> Path:
+        project.config |= {"columns": columns} if columns else {}
         table = project.tables[file]
         for name, value in made.items():
             table[name] = value(table[name]) if callable(value) else value
@@ -264,6 +265,10 @@ CORPUS: dict[str, tuple[Change, str]] = {
     ),
     "cells in bar": (column(p_kPa=2.5), "2.5 kPa is outside 20 to 2000 kPa; it looks like bar"),
     "cells in Pa": (column(p_kPa=250e3), "it looks like Pa"),
+    "cells in another unit than stated": (
+        column(columns={"p_kPa": {"column": "p_kPa", "unit": "bar"}}),
+        ':2: column p_kPa: 25000 kPa is outside 20 to 2000 kPa; its unit is stated as "bar"; correct the unit',
+    ),
     "a negative speed": (column(V_mps=-6.0), "speeds are positive and direction says backward"),
     "a direction in words": (
         column(direction="astern"),

@@ -221,6 +221,7 @@ def test_a_loaded_configuration_is_returned_unchanged(tmp_path):
         ('file = "b.csv"', 'file = "b.csv"\ndirection = "back"', "sweep[2].direction", 15, "'backward'"),
         ("[tyre]", "[tire]", "tire", 1, 'did you mean "tyre"'),
         ("[tyre]", "path_centre = 'left'\n[tyre]", "path_centre", 1, "[rig]"),
+        ("[rig]", "path_radius = 1.3\n[rig]", "tyre.path_radius", 7, "is unknown here; move it to [rig]"),
         ("[rig]", "[spin]\nexact = 'all'\n[rig]", "spin.exact", 8, "'turn-slip'"),
         ("front-1", "../front", "tyre.name", 2, "cannot name"),
         (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from mffit.errors import InputError
 from mffit.pipeline.inputs import read_points
 from mffit.points import make_points
 from mffit.recordings import sniff
-from mffit.suspicion.all_files import moment_reversed
+from mffit.suspicion.all_files import angles_exchanged, moment_reversed
 from tir.conventions import FLIPPED
 
 COLUMNS = {"alpha": "alpha_deg", "Fy": "Fy_N", "Mz": "Mz_Nm"}
@@ -300,3 +301,15 @@ def test_a_recording_with_mx_of_the_wrong_sign_is_told_so(tmp_path):
             one for one in sniff([tmp_path / "a.csv"]).reading.warnings if "Mx_Nm has the wrong sign" in one
         ]
         assert bool(said) is (sign < 0.0)
+
+
+@pytest.mark.parametrize("exchanged", [False, True])
+def test_sideslip_and_camber_exchanged_in_all_files_are_asked_for(project, exchanged):
+    """The tables of a disc keep both directions and zeros, which are the same in both angles."""
+    config = configuration.load(project.write())
+    points = read_points(config).points
+    points = points.replace(alpha=points.gamma, gamma=points.alpha) if exchanged else points
+    said = [angles_exchanged.said(facts) for facts in angles_exchanged.find(points, config)]
+    assert [bool(re.search(r"Fy_N changes \d+ times as fast with gamma_deg", one)) for one in said] == [
+        True
+    ] * exchanged

@@ -446,5 +446,5 @@ def test_events_bring_the_state_at_once(session):
 def test_a_folder_that_is_not_there_is_said(tmp_path):
     from mffit.window import open_path
 
-    with pytest.raises(InputError, match="cannot be read"):
+    with pytest.raises(InputError, match="does not exist"):
         open_path([tmp_path / "none"], opened=print)
