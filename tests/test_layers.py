@@ -127,6 +127,30 @@ def test_modules_of_a_folder_import_in_one_direction(folder):
         after = {name: used for name, used in after.items() if name not in free}
 
 
+def test_a_name_is_imported_from_where_it_is_defined():
+    """From the module that defines it, or from the folder whose __init__.py gives it out."""
+    trees = {
+        path.relative_to(ROOT).with_suffix("").as_posix().replace("/", "."): ast.parse(
+            path.read_text(encoding="utf-8")
+        )
+        for path in modules("mffit")
+    }
+    passed_on = {
+        f"{name}.{alias.asname or alias.name}"
+        for name, tree in trees.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+    wrong = {
+        f"{place(path, line)}: {name} is only imported there; import it from where it is defined"
+        for path in modules("mffit")
+        for line, name in imports(path)
+        if name in passed_on
+    }
+    assert not wrong, "\n".join(sorted(wrong))
+
+
 def test_tir_does_not_know_mffit():
     wrong = [
         f"{place(path, line)}: tir imports {name}; a simulation must be able to use tir alone"

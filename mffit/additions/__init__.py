@@ -2,16 +2,3 @@
 
 from mffit.additions.kinds import ADDITIONS, BY_ID, SEPARATING, Addition, addition_named
 from mffit.additions.runs import PlannedRun, candidates, largest_slip, new_setups, swept
-
-__all__ = [
-    "ADDITIONS",
-    "BY_ID",
-    "SEPARATING",
-    "Addition",
-    "PlannedRun",
-    "addition_named",
-    "candidates",
-    "largest_slip",
-    "new_setups",
-    "swept",
-]

@@ -10,16 +10,4 @@ if TYPE_CHECKING:
     from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Difference
     from mffit.comparison.wording import note_on_temperature
 
-__all__ = [
-    "DECIDED_BY",
-    "PEAKS",
-    "ComparedSubject",
-    "Comparison",
-    "CurveGap",
-    "Difference",
-    "Tested",
-    "against_points",
-    "between",
-    "note_on_temperature",
-]
 __getattr__ = on_demand(__name__)

@@ -5,15 +5,3 @@ from mffit.conversion.convert import READERS, check_old, convert, write
 from mffit.conversion.old_files import read_old
 from mffit.conversion.result import Conversion
 from tir.formula import is_old
-
-__all__ = [
-    "KINDS",
-    "READERS",
-    "Conversion",
-    "check_old",
-    "convert",
-    "is_old",
-    "read_old",
-    "to_old",
-    "write",
-]

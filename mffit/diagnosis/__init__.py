@@ -28,5 +28,4 @@ if TYPE_CHECKING:
     from mffit.diagnosis.search import Asked
     from mffit.diagnosis.validation import Gap, gap, validate
 
-__all__ = ["AcceptedEffect", "Asked", "Diagnosis", "Gap", "corrected_points", "diagnose", "gap", "validate"]
 __getattr__ = on_demand(__name__)

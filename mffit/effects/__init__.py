@@ -3,5 +3,3 @@
 from mffit.effects.catalog import CATALOG, NAMES
 from mffit.effects.effect import Effect, Free
 from mffit.effects.needs import NEEDS, OF_CHANNEL
-
-__all__ = ["CATALOG", "NAMES", "NEEDS", "OF_CHANNEL", "Effect", "Free"]

@@ -6,5 +6,3 @@ The equations come from ``tir``; this folder adds names, units, files and the ca
 from mffit.export.code import write_c, write_matlab
 from mffit.export.fmu import write_fmu
 from mffit.export.table import write_table
-
-__all__ = ["write_c", "write_fmu", "write_matlab", "write_table"]

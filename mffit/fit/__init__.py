@@ -16,20 +16,4 @@ if TYPE_CHECKING:
     from mffit.fit.wording import zeros_listed
     from mffit.fit.written.files import file_names, fitted_use, name_at_temperature, plain_use
 
-__all__ = [
-    "Agreement",
-    "Coefficient",
-    "FitResult",
-    "begin",
-    "ensemble",
-    "file_names",
-    "fit",
-    "fitted_use",
-    "name_at_temperature",
-    "plain_use",
-    "sketch",
-    "straight_cornering_stiffness",
-    "with_free_epsilon",
-    "zeros_listed",
-]
 __getattr__ = on_demand(__name__)

@@ -3,16 +3,3 @@
 from mffit.fleet.hierarchy import Hierarchy, TyreEstimate, estimate
 from mffit.fleet.record import EPSILON, Fleet, Row, kinds_of
 from mffit.fleet.specimen import INFORMATION, Specimen, read
-
-__all__ = [
-    "EPSILON",
-    "INFORMATION",
-    "Fleet",
-    "Hierarchy",
-    "Row",
-    "Specimen",
-    "TyreEstimate",
-    "estimate",
-    "kinds_of",
-    "read",
-]

@@ -6,5 +6,3 @@ the most probable parameters.
 """
 
 from mffit.linearised.fitted import LinearisedChannel, LinearisedFit, Uncertain, linearised
-
-__all__ = ["LinearisedChannel", "LinearisedFit", "Uncertain", "linearised"]

@@ -16,26 +16,3 @@ from mffit.measured.result import (
     SideslipZeros,
 )
 from mffit.measured.uncertain import Contribution
-
-__all__ = [
-    "Alignment",
-    "Contribution",
-    "Drift",
-    "LoadResult",
-    "Measured",
-    "OneWayLag",
-    "RadiusReading",
-    "SetupResult",
-    "SetupScatter",
-    "SideslipZeros",
-    "adding_to_camber",
-    "align",
-    "at_the_axis",
-    "camber_of_no_spin",
-    "measure",
-    "measured_path_radius",
-    "odd_alpha",
-    "radius_readings",
-    "unspun",
-    "was_coupled",
-]

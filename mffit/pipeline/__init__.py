@@ -18,22 +18,4 @@ if TYPE_CHECKING:
     from mffit.pipeline.watching import watch
     from mffit.prediction import predict
 
-__all__ = [
-    "align",
-    "build",
-    "build_many",
-    "compare",
-    "diagnose",
-    "explained",
-    "fleet",
-    "init_from",
-    "is_current",
-    "plan",
-    "predict",
-    "project_of",
-    "show",
-    "spin",
-    "watch",
-    "write_tydex",
-]
 __getattr__ = on_demand(__name__)

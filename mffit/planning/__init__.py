@@ -2,14 +2,3 @@
 
 from mffit.planning.goals import Goal, read_goal
 from mffit.planning.plan import Identified, NextRun, Plan, PlanStep, next_run, plan
-
-__all__ = [
-    "Goal",
-    "Identified",
-    "NextRun",
-    "Plan",
-    "PlanStep",
-    "next_run",
-    "plan",
-    "read_goal",
-]

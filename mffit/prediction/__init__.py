@@ -7,22 +7,3 @@ from mffit.prediction.region import MissedAtReadings, missed_at_readings
 from mffit.prediction.road import OnRoad, road_of
 from mffit.prediction.stored import FILE, load, predict, write
 from mffit.prediction.wording import missed_sentence, road_sentences
-
-__all__ = [
-    "FILE",
-    "CorrectionTable",
-    "MissedAtReadings",
-    "OnRoad",
-    "Predictor",
-    "correction",
-    "load",
-    "missed_at_readings",
-    "missed_sentence",
-    "predict",
-    "predictor",
-    "road_of",
-    "road_sentences",
-    "write",
-    "write_correction",
-    "write_table",
-]

@@ -3,5 +3,3 @@
 from mffit.recordings.disc import DiscPath, disc_signs
 from mffit.recordings.project_file import Stated, project_text
 from mffit.recordings.sniffed import Sniffed, sniff
-
-__all__ = ["DiscPath", "Sniffed", "Stated", "disc_signs", "project_text", "sniff"]

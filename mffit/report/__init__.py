@@ -11,5 +11,4 @@ if TYPE_CHECKING:
     from mffit.report.fleet import write_fleet
     from mffit.report.plan import write_plan
 
-__all__ = ["write_build", "write_comparison", "write_diagnosis", "write_fleet", "write_plan"]
 __getattr__ = on_demand(__name__)

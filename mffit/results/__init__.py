@@ -7,5 +7,4 @@ from mffit.on_demand import on_demand
 if TYPE_CHECKING:
     from mffit.results.records import CORRECTION, TEMPERATURE, BuildOutcome, BuildResult
 
-__all__ = ["CORRECTION", "TEMPERATURE", "BuildOutcome", "BuildResult"]
 __getattr__ = on_demand(__name__)

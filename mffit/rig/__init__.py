@@ -3,13 +3,3 @@
 from mffit.rig.histories import blocks, distance_km, reference_speed, successive
 from mffit.rig.readings import Readings
 from mffit.rig.simulation import SIMULATED, Simulation
-
-__all__ = [
-    "SIMULATED",
-    "Readings",
-    "Simulation",
-    "blocks",
-    "distance_km",
-    "reference_speed",
-    "successive",
-]

@@ -23,28 +23,4 @@ if TYPE_CHECKING:
         judge,
     )
 
-__all__ = [
-    "RULES",
-    "SOUND",
-    "Doubt",
-    "FinishedFit",
-    "FittedModel",
-    "HeldNumber",
-    "JudgedMeasurement",
-    "JudgedSweeps",
-    "LeftOutSweeps",
-    "Misread",
-    "Outlier",
-    "Trust",
-    "When",
-    "after_the_fit",
-    "before_the_fit",
-    "contradictions",
-    "judge",
-    "marks",
-    "outliers_sentence",
-    "parts_of_sweeps",
-    "signatures",
-    "under_axes",
-]
 __getattr__ = on_demand(__name__)

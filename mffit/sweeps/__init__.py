@@ -2,5 +2,3 @@
 
 from mffit.sweeps.loading import load
 from mffit.sweeps.sweep import Sweep
-
-__all__ = ["Sweep", "load"]

@@ -2,5 +2,3 @@
 
 from mffit.viewer.page import Page, files_page
 from mffit.viewer.project import project_data, project_html, project_page, readings_data
-
-__all__ = ["Page", "files_page", "project_data", "project_html", "project_page", "readings_data"]

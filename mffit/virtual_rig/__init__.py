@@ -8,5 +8,3 @@ from mffit.virtual_rig.loading import load_plan
 from mffit.virtual_rig.plan import RigPlan
 from mffit.virtual_rig.simulate import simulate
 from mffit.virtual_rig.truth import Truth
-
-__all__ = ["Campaign", "RigPlan", "Truth", "load_plan", "run", "simulate"]

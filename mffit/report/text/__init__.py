@@ -17,28 +17,4 @@ if TYPE_CHECKING:
     from mffit.report.text.recordings import sniff_summary
     from mffit.report.text.watching import arrival_line, campaign_lines, campaign_text
 
-__all__ = [
-    "alignment_table",
-    "arrival_line",
-    "budget_table",
-    "build_explained",
-    "build_summary",
-    "campaign_lines",
-    "campaign_text",
-    "comparison_table",
-    "conversion_summary",
-    "diagnosis_summary",
-    "few",
-    "fleet_summary",
-    "lacking",
-    "many_line",
-    "many_summary",
-    "models_written",
-    "plan_summary",
-    "prediction_summary",
-    "sniff_summary",
-    "spin_summary",
-    "steps",
-    "warnings_beside",
-]
 __getattr__ = on_demand(__name__)
