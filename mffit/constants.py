@@ -21,7 +21,9 @@ EXPLAINED_SHARE = Real(
     1.0 / 3.0, "-", "A known mistake explains an error if undoing it leaves less than this share."
 )
 MOST = Real(
-    0.5, "-", "Share from which it is most of a range, a misfit, a gain or a reading, or likelier than not."
+    0.5,
+    "-",
+    "Share from which it is most of a range, a misfit, a gain, a reading or an uncertainty, or likelier than not.",
 )
 LIKENESS_OF_MISSPELT = Real(0.6, "-", "Similarity (difflib) from which a key or heading counts as misspelt.")
 LONGEST_QUOTE = Count(60, "characters", "Longest quotation of a file in a message.")
@@ -123,11 +125,6 @@ ASSUMED_NOISE_SHARE = Real(
 )
 HOTTEST_TREAD = Real(
     110.0, "degC", "Median of a tread's temperature that no tread keeps; in degF it is usual, 43 degC."
-)
-NOMINAL_OVER_HIGHEST_LOAD = Real(
-    1.05,
-    "-",
-    "Nominal load over the highest level of load from which it is pointed out; levels scatter by less.",
 )
 
 SHARES_OF_A_BUILD = Series(

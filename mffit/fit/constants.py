@@ -9,9 +9,6 @@ HUBER_THRESHOLD = Real(4.0, "-", "Residuals beyond this many robust standard dev
 NOMINAL_NOISE_SHARE = Real(0.01, "-", "Standard uncertainty over the range of a channel that states none.")
 
 # What the points determine
-FITTED_SHARE_OF_PRIOR = Real(
-    0.5, "-", "Largest standard error over the prior's at which a coefficient is fitted, not regularised."
-)
 STRONG_CORRELATION = Real(0.95, "-", "Smallest absolute correlation of two coefficients that is stated.")
 
 # Prior knowledge of coefficients

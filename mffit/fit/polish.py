@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from mffit.constants import MOST
 from mffit.errors import InputError
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
@@ -109,7 +110,7 @@ def _fitted(
     posterior = told_by_weights(problem, numbers, {**given.held, **given.held_rig})
     known = {name: problem.value(name) for name in given.held_rig}
     absent = [name for name, value in known.items() if (e := error_of(name)) and value == e.undisturbed]
-    stderr, share = posterior.stderr, constants.FITTED_SHARE_OF_PRIOR
+    stderr, share = posterior.stderr, MOST
     return Fitted(
         values={name: v for name, v in solution.values.items() if error_of(name) is None},
         rig={

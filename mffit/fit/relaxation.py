@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.as_json import keys, with_u
+from mffit.constants import MOST
 from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers, with_beside
 from mffit.fit.coverage import StageCoverage
@@ -178,7 +179,7 @@ def _of_direction(
     if steps is None:
         return Relaxation(direction, missing=direction.run)
     runs = [_of_run(direction, steps.select(steps.sweep == k), simulation) for k in np.unique(steps.sweep)]
-    clear = [run for run in runs if run.length.u < constants.FITTED_SHARE_OF_PRIOR * run.length.value]
+    clear = [run for run in runs if run.length.u < MOST * run.length.value]
     if not clear:
         return Relaxation(direction, missing=UNCLEAR.format(what=direction.word))
     values = simulation.values

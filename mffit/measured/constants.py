@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.constant import Count, Real
+from tir.constant import Count, Real, Series
 
 GUESSED_STIFFNESS_U = Real(
     0.5, "-", "Relative standard uncertainty of the usual cornering stiffness: tyres have 5 to 25 1/rad."
@@ -42,6 +42,9 @@ SLOPE_SHAPE = Real(
     "Relative standard uncertainty of a slope at zero beyond the difference of shapes, as terms in |gamma| bend the odd curve "
     "at zero.",
     "noise-free sample tyres are 0.1 to 1.3 % off",
+)
+SHAPE_OF_A_CURVE = Series(
+    (1.2, 0.5), "-", "Expected shape factor C of a side force over an angle, and its standard deviation."
 )
 CURVATURE_SPREAD = Real(
     1.0, "-", "Prior standard deviation of the curvature E of a sideslip curve, whose prior mean is 0."

@@ -101,10 +101,11 @@ def _saturating(x: bytes, y: bytes, u: bytes, curvature: float) -> tuple[float, 
     first = np.argsort(angle)[:3]
     start = float(np.sum(angle[first] * force[first]) / np.sum(angle[first] ** 2))
     top = max(float(np.max(np.abs(force))), 1e-9)
+    expected, spread = constants.SHAPE_OF_A_CURVE
     numbers = [
         FreeNumber("slope", 1.05, 0.2, 5.0),  # relative to its first estimate
         FreeNumber("ceiling", 1.2, 0.7, 20.0),  # relative to the largest value
-        FreeNumber("C", 1.2, 0.3, 1.9, expected=1.2, spread=0.5),
+        FreeNumber("C", expected, 0.3, 1.9, expected=expected, spread=spread),
     ]
     if curvature:
         numbers.append(FreeNumber("E", 0.0, -6.0, 1.0, expected=0.0, spread=curvature))

@@ -8,14 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import (
-    CAMBER_OF_SLOPES,
-    FEWEST,
-    HOTTEST_TREAD,
-    NOMINAL_OVER_HIGHEST_LOAD,
-    STRAIGHT,
-    UPRIGHT,
-)
+from mffit.constants import CAMBER_OF_SLOPES, FEWEST, HOTTEST_TREAD, STRAIGHT, UPRIGHT
 from mffit.points import Points, levels
 from mffit.suspicion import constants
 from mffit.suspicion.groups import readings_of
@@ -201,7 +194,7 @@ class LevelsOfLoad(NamedTuple):
 
     def below(self, nominal: float) -> bool:
         """Whether a nominal load [N] is clearly above the highest level."""
-        return nominal > NOMINAL_OVER_HIGHEST_LOAD * self.highest
+        return nominal > (1.0 + levels.LOAD.tolerance) * self.highest
 
 
 @rule(

@@ -27,8 +27,8 @@ LIKENESS_OF_UNUSED_HEADING = Real(
 LARGEST_UNPACKED = Count(
     600_000_000,
     "bytes",
-    "Largest table that is read, unpacked: twice the largest recording that was tried, of five million rows and eight channels; "
-    "a packed file of 1 MB may hold 1 GB.",
+    "Largest table that is read, unpacked, and recording that a window takes: twice the largest recording that was tried, "
+    "of five million rows and eight channels; a packed file of 1 MB may hold 1 GB.",
 )
 LARGEST_RATIO = Count(
     50,
@@ -44,9 +44,4 @@ LARGEST_FALL_OF_GRIP = Real(
 )
 CAMBER_THAT_TURNS_LOAD = Real(
     5.0, "deg", "Below this camber both definitions of the load agree within the rig's control."
-)
-STEADIER_LOAD_RATIO = Real(
-    0.5,
-    "-",
-    "A load column is vertical if it varies less than this times the load turned from the wheel plane.",
 )

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config.models import MachineTable
+from mffit.constants import MOST
 from mffit.sweeps import constants
 from mffit.sweeps.sweep import Sweep
 
@@ -122,5 +123,5 @@ def load_is_vertical(sweeps: Sequence[Sweep]) -> bool:
         turned.append(np.abs(np.diff(vertical)) / sweep.Fz[1:])
     if not as_given:
         return False
-    limit = constants.STEADIER_LOAD_RATIO * np.median(np.concatenate(turned))
+    limit = MOST * np.median(np.concatenate(turned))
     return bool(np.median(np.concatenate(as_given)) < limit)

@@ -4,11 +4,6 @@ from __future__ import annotations
 
 from tir.constant import Count, Real
 
-SLIDER_REACH = Real(
-    6.0,
-    "-",
-    "Reach of a coefficient's slider to either side, in standard uncertainties: beyond what the data allow.",
-)
 SLIDER_LEAST = Real(
     0.2,
     "-",

@@ -9,6 +9,7 @@ from dataclasses import replace
 from mffit.as_json import Json, document
 from mffit.config import Config
 from mffit.config.by_hand import may_be_free, unsettable
+from mffit.constants import CERTAIN_SIGMA
 from mffit.fit import Coefficient, FitResult, name_at_temperature
 from mffit.fit.agreement import with_points
 from mffit.fit.influences.modelled import without_runs
@@ -223,5 +224,5 @@ def _row(row: Parameter, fitted: FitResult) -> dict[str, object]:
 def _reach(value: float, record: Coefficient, lower: float, upper: float) -> tuple[float, float]:
     """Ends of the slider, within the bounds."""
     least = constants.SLIDER_LEAST * (1.0 + abs(value))
-    reach = max(constants.SLIDER_REACH * (record.stderr or 0.0), least)
+    reach = max(CERTAIN_SIGMA * (record.stderr or 0.0), least)
     return min(max(value - reach, lower), value), max(min(value + reach, upper), value)

@@ -19,6 +19,7 @@ from starlette.routing import Mount, Route
 
 from mffit.as_json import plain
 from mffit.errors import InputError
+from mffit.sweeps.constants import LARGEST_UNPACKED
 from mffit.sweeps.formats import ENDINGS
 from mffit.viewer import project_html
 from mffit.viewer.page import recordings_html
@@ -140,9 +141,9 @@ class Answers:
 
     async def store(self, request: Request) -> Response:
         folder, name = self.opened.folder, request.path_params["name"]
-        content = await _body(request, int(constants.LARGEST_RECORDING))
+        content = await _body(request, int(LARGEST_UNPACKED))
         if content is None:
-            most = f"{constants.LARGEST_RECORDING / 1e6:.0f} MB"
+            most = f"{LARGEST_UNPACKED / 1e6:.0f} MB"
             raise InputError(f"{name} is larger than {most}; copy it into the folder")
         return await self._done(lambda: {"name": folder.store(name, content).name})
 

@@ -8,12 +8,6 @@ LOOK_AGAIN = Real(0.2, "s", "Time between looks at tyre.toml and at the progress
 TIME_TO_STOP = Real(
     3.0, "s", "Time in which a stopped run may remove its temporary files before it is killed."
 )
-MOST_UNDONE = Count(200, "-", "Most saved changes that can be undone: a long session.")
-LARGEST_RECORDING = Count(
-    200_000_000,
-    "-",
-    "Largest recording in bytes that the page takes: an hour of 30 channels at 100 a second as text.",
-)
 LARGEST_REQUEST = Count(
     1_000_000, "-", "Largest request in bytes: seventy thousand single lines left out at once."
 )

@@ -23,7 +23,6 @@ from mffit.pipeline.inputs import check_named_files, input_names, read_points
 from mffit.recordings.disc import files_of_folder
 from mffit.sweeps import formats
 from mffit.sweeps.loading import check_excluded
-from mffit.window import constants
 from mffit.window.edits import EDITS, setting
 from mffit.window.runs import PAGES, RUNS, Run, RunOutcome, out_of
 from mffit.window.settings import settings
@@ -65,8 +64,7 @@ class ProjectFile:
         except OSError:
             return ""
         found = digest_of(content)
-        if found not in self._shown:
-            self._shown = dict([*self._shown.items()][1 - constants.MOST_UNDONE :]) | {found: content}
+        self._shown[found] = content
         return found
 
     def config(self) -> Config:
@@ -102,7 +100,7 @@ class ProjectFile:
         except ChangedMeanwhile as error:
             shown = self._shown.get(seen, before)
             raise ChangedElsewhere(self.path, shown, error.now, self._changed(shown, change)) from None
-        self.steps = [*self.steps[1 - constants.MOST_UNDONE :], (before, after)]
+        self.steps.append((before, after))
 
     def _changed(self, before: bytes, change: Callable[[str], str]) -> bytes:
         """The content after a change."""

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from mffit.config import Declaration
-from mffit.constants import STRAIGHT
+from mffit.constants import MOST, STRAIGHT
 from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers
 from mffit.fit.coverage import why_held
@@ -116,7 +116,7 @@ def rolling_resistance(
     stderr = dict(zip(end.names, np.sqrt(np.diag(covariance)).tolist(), strict=True))
     scaled = np.array([0.0 if n in BOUNDS else end.values[n] for n in names])  # exponents are not factors
     of_gain = u_gain**2 * np.outer(scaled, scaled)
-    of_prior = {n.name for n in numbers if stderr[n.name] > constants.FITTED_SHARE_OF_PRIOR * n.spread}
+    of_prior = {n.name for n in numbers if stderr[n.name] > MOST * n.spread}
     return Resistance(
         beside=BesideNumbers(
             {name: end.values[name] for name in names}, covariance[: len(names), : len(names)] + of_gain

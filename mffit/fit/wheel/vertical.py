@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.special import stdtrit
 
-from mffit.constants import COVERAGE_FACTOR_95, STRAIGHT, UPRIGHT
+from mffit.constants import COVERAGE_FACTOR_95, MOST, STRAIGHT, UPRIGHT
 from mffit.fit import constants
 from mffit.fit.agreement import Agreement, agreement
 from mffit.fit.beside import BesideNumbers
@@ -331,7 +331,7 @@ def _fitted(
         regularised=frozenset(
             n.name
             for n, error in zip(end.objective.numbers, stderr.tolist(), strict=True)
-            if error > constants.FITTED_SHARE_OF_PRIOR * n.spread
+            if error > MOST * n.spread
         ),
     )
 

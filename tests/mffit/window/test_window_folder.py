@@ -268,7 +268,7 @@ def test_nothing_is_overwritten_and_nothing_else_is_stored(client, folder, name)
 
 
 def test_a_recording_that_is_too_large_or_from_elsewhere_is_refused(client, folder, monkeypatch):
-    monkeypatch.setattr("mffit.window.constants.LARGEST_RECORDING", 10)
+    monkeypatch.setattr("mffit.window.app.LARGEST_UNPACKED", 10)
     assert "larger than" in client.post(f"{client.home}store/a.csv", content=b"x" * 11).json()["error"]
     for headers in ({"origin": "http://tyres.example"}, {"origin": "null"}, {"sec-fetch-site": "cross-site"}):
         assert client.post(f"{client.home}store/a.csv", content=b"x", headers=headers).status_code == 403
