@@ -5,8 +5,6 @@
 >>> result.measured.epsilon_gamma  # doctest: +SKIP
 """
 
-from __future__ import annotations
-
 import sys
 import warnings
 from importlib.machinery import ModuleSpec

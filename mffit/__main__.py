@@ -1,7 +1,5 @@
 """``python -m mffit`` and the script ``mffit``: the command line, whose modules take some tenths of a second to import."""
 
-from __future__ import annotations
-
 import gc
 import sys
 

@@ -4,8 +4,6 @@ The keys of a record are its fields, unless :func:`keys` states others next to i
 Standard JSON has no NaN and no infinity; both become null.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import re

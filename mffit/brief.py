@@ -1,7 +1,5 @@
 """Records on a screen: a terminal and a notebook show a line per field, however much a record holds."""
 
-from __future__ import annotations
-
 import dataclasses
 import html
 from collections.abc import Collection, Mapping

@@ -1,7 +1,5 @@
 """Numbers of judgement that several folders share; each folder's own are in its ``constants.py``."""
 
-from __future__ import annotations
-
 from tir.constant import Count, Real, Series
 
 USUAL_CORNERING_STIFFNESS = Real(

@@ -1,7 +1,5 @@
 """Tables as CSV text in UTF-8, with the same line ends on every system."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pandas as pd

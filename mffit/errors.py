@@ -4,8 +4,6 @@ Only :class:`InputError` reaches the user without a traceback: the command line 
 and exits with 2. Any other exception is a bug in mffit. Every module may import this one.
 """
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """``mffit init``: a commented ``tyre.toml`` with empty CSV files, or a copy of a sample."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from importlib import resources

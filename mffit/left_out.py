@@ -5,8 +5,6 @@ the fit. Without the group the covariance is A^-1 with A = C^-1 - J^T J, and the
 Welsch, Regression Diagnostics, 1980, section 2.1, there with the hat matrix J C J^T).
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.special import ndtri
 

@@ -1,7 +1,5 @@
 """Date, program, version, source and method of a result, the same in pages and in JSON."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import platform

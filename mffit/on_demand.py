@@ -1,7 +1,5 @@
 """Packages that import their names on first use, so that a command loads only the modules that it needs."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Callable
 from functools import cache

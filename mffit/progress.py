@@ -1,7 +1,5 @@
 """Progress messages of long runs, and the share of a build that is done."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable

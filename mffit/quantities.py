@@ -1,7 +1,5 @@
 """Word, symbol and unit of all quantities, for sentences, tables, pictures and pages alike."""
 
-from __future__ import annotations
-
 import re
 from typing import NamedTuple
 

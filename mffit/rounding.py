@@ -1,7 +1,5 @@
 """Numbers as people read them: rounded by their uncertainty, with the sign that typographers use."""
 
-from __future__ import annotations
-
 import math
 
 from mffit import constants

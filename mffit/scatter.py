@@ -1,7 +1,5 @@
 """Size and scatter of finite numbers, plain and robust against outliers."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Names of the sheets of Excel workbooks: ``book.xlsx#Sheet``, wherever the name of a recording is expected."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

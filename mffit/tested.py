@@ -1,7 +1,5 @@
 """What was tested, as comments of a property file say it: writing and reading."""
 
-from __future__ import annotations
-
 import re
 
 from tir import Tyre

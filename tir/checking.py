@@ -1,7 +1,5 @@
 """Problems that a tyre would cause in a simulation: single values and physics over its ranges. Raises and repairs nothing."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 

@@ -8,8 +8,6 @@ Each folder keeps its own in a module ``constants.py``, and the page ``constants
 (1.0, 'deg')
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from typing import Any, Self

@@ -3,8 +3,6 @@
 The equations have none: their constants are those of the sources. Those of the generated code: ``tir/codegen/constants.py``.
 """
 
-from __future__ import annotations
-
 from tir.constant import Count, Real, Series
 
 # Calls

@@ -1,7 +1,5 @@
 """Problems that one program would have with the text of a file."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from tir.codegen.program import Switches, parameters_of

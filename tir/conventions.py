@@ -4,8 +4,6 @@ ISO-W (TYDEX W): x forward, y left, z up; ``alpha = atan(Vsy/Vx)``; ``gamma > 0`
 ``Fz > 0``. From there each system reverses the channels listed; gamma and Mx are the same in all.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 FLIPPED: dict[str, frozenset[str]] = {

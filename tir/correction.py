@@ -3,8 +3,6 @@
 ``mffit build`` writes it; docs/correction.md says how to add it in any simulation.
 """
 
-from __future__ import annotations
-
 import csv
 import hashlib
 import itertools

@@ -1,7 +1,5 @@
 """Values of keys that a file lacks: those of the table, on the scale of the file's own tyre."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Mapping
 from typing import Any

@@ -1,7 +1,5 @@
 """Physical conditions over the whole range of a tyre: each is searched for its worst point, inside and just outside."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """What can be wrong with a property file: one exception class, one record, and the words for lists of names."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The public evaluation: shapes, limits and direction of rolling around the equations."""
 
-from __future__ import annotations
-
 from numbers import Real
 from types import SimpleNamespace
 from typing import Any

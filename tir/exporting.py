@@ -2,8 +2,6 @@
 what can be turned: scaling factors, and the temperature if the file has terms.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Iterable, Sequence

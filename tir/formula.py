@@ -1,7 +1,5 @@
 """The formula of a property file: by its FITTYP, else its keys, else its PROPERTY_FILE_FORMAT."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Mapping
 from pathlib import Path

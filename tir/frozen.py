@@ -1,7 +1,5 @@
 """Records whose arrays are read-only."""
 
-from __future__ import annotations
-
 from dataclasses import fields
 from operator import is_
 from typing import Any

@@ -1,7 +1,5 @@
 """Inputs of a call as arrays; what the equations cannot compute with is refused, with the way to the same in another form."""
 
-from __future__ import annotations
-
 import reprlib
 from collections.abc import Sequence
 from typing import Any

@@ -4,8 +4,6 @@ A meter counts what is computed without machine code. When that has taken about 
 loaded from the cache of the user, or compiled if it is not there, once per machine. So a program with few calls pays nothing.
 """
 
-from __future__ import annotations
-
 import contextlib
 import math
 from functools import cache

@@ -1,7 +1,5 @@
 """Whether turn slip acts: one rule for calls and exports, and warnings about a file's coefficients of turn slip."""
 
-from __future__ import annotations
-
 import sys
 import warnings
 from collections.abc import Collection, Mapping

@@ -1,7 +1,5 @@
 """Some outputs of the equations, plain or with exact derivatives, without computing the others."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 

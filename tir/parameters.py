@@ -1,7 +1,5 @@
 """The parameter table as frozen records; contains no file syntax and no equation."""
 
-from __future__ import annotations
-
 import csv
 import math
 from dataclasses import dataclass

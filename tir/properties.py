@@ -1,7 +1,5 @@
 """Interpretation of a property file: from its document and the table to the record of a tyre."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Collection, Mapping, Sequence

@@ -4,8 +4,6 @@
 only, so that imports point in one direction.
 """
 
-from __future__ import annotations
-
 import reprlib
 from collections.abc import Iterator, KeysView, Mapping
 from dataclasses import dataclass, field, fields, replace

@@ -1,7 +1,5 @@
 """The programs for which a property file can be written, and what differs in the file for each."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field

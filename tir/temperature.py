@@ -1,7 +1,5 @@
 """The tyre at another temperature: the terms that the comments of a file state, applied to its scaling factors."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Units in a file's [UNITS] that its values contradict: a program wrote the word of one unit and the numbers of another."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType

@@ -1,7 +1,5 @@
 """The [UNITS] of a file, and their factors to the units of the table."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

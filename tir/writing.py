@@ -5,8 +5,6 @@ tyre was read from, only the characters of changed values differ: keys that the 
 section, and the comment of a key is replaced if the origin of its value has changed.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import tempfile

@@ -1,7 +1,5 @@
 """Numbers of judgement of the runs that a rig could add; set-points of one kind of run are in its record."""
 
-from __future__ import annotations
-
 from tir.constant import Real, Series
 
 SWEEP_SHARES = Series(

@@ -1,7 +1,5 @@
 """The kinds of runs that a rig could add to a programme, one record each."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

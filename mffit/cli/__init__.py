@@ -1,7 +1,5 @@
 """The command line, a thin layer over the Python API; one module per group of commands."""
 
-from __future__ import annotations
-
 import errno
 import sys
 from contextlib import redirect_stderr, redirect_stdout

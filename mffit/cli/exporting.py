@@ -1,7 +1,5 @@
 """`mffit export`: a property file as code, FMU or the file of another program, or a project's points as TYDEX."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Arguments and options that several commands share, each in one place."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any, TypeVar

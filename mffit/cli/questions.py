@@ -1,7 +1,5 @@
 """`mffit spin`, `align`, `diagnose`, `compare`, `plan` and `predict`: questions to points and builds."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

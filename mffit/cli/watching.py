@@ -1,7 +1,5 @@
 """`mffit watch`: what the files of a campaign say while it runs."""
 
-from __future__ import annotations
-
 import json
 import time
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Comparison of two files, or of a file with measured points: numbers, curves and coefficients."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain

@@ -1,7 +1,5 @@
 """Numbers of judgement of a comparison."""
 
-from __future__ import annotations
-
 from tir.constant import Series
 
 COMPARED_LOADS = Series(

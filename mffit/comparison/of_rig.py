@@ -1,7 +1,5 @@
 """Whether the declared errors of a rig can explain what its readings differ from a file by, or only the tyre can."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The records of a comparison."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """The sentences about a comparison."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 

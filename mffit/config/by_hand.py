@@ -1,7 +1,5 @@
 """``[coefficients]``: values, bounds, starting values and priors that the engineer sets for single coefficients."""
 
-from __future__ import annotations
-
 import math
 import sys
 import tomllib

@@ -1,7 +1,5 @@
 """Numbers of judgement of the configuration; the plausible ranges of single keys are in ``quantities.py``."""
 
-from __future__ import annotations
-
 from tir.constant import Real
 
 LARGEST_U_OF_A_RADIUS = Real(

@@ -1,7 +1,5 @@
 """Lists of lines of a file, as in ``lines = "39-44, 60"``, and ``[fit] exclude``, which leaves them out with a reason."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterable, Sequence
 from typing import Annotated

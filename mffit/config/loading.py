@@ -1,7 +1,5 @@
 """From the text of ``tyre.toml`` to a checked :class:`Config`, or one sentence that says what to correct."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path

@@ -3,8 +3,6 @@
 The keys to suggest for an unknown one are those of the pydantic models.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Plausible ranges of the numbers of ``tyre.toml``, with a remedy for values outside them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

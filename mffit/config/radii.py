@@ -3,8 +3,6 @@
 The formulae accept plain numbers and numbers with an uncertainty.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The configuration of a run as plain TOML types, for ``resolved.toml``."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The rig as ``[rig]`` declares it: signs of its axes, curvature of its path, and its errors with standard uncertainties."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """The base of every table of ``tyre.toml``."""
 
-from __future__ import annotations
-
 from pydantic import BaseModel, ConfigDict
 
 

@@ -1,7 +1,5 @@
 """Content of a TOML file and the line of each key; the keys themselves are not interpreted here."""
 
-from __future__ import annotations
-
 import re
 import sys
 import tomllib

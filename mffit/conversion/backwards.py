@@ -1,7 +1,5 @@
 """``mffit convert --to mf52``: a file of MF 6.2 as one of MF 5.2 or PAC2002, by a fit of the old formula to its forces."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Numbers of judgement of the conversion: over which conditions the old forces are reproduced."""
 
-from __future__ import annotations
-
 from tir.constant import Count, Real, Series
 
 CONVERTED_LOADS = Series(

@@ -1,7 +1,5 @@
 """``mffit convert``: a file of MF 5.2 or PAC2002 as one of MF 6.2."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path

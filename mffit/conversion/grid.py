@@ -1,7 +1,5 @@
 """The conditions over which a converted file has the old forces."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 

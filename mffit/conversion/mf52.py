@@ -6,8 +6,6 @@ trail (57). The equivalent slip of the combined moment has the tangent of the si
 take the angle itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any, NamedTuple

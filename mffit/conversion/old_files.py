@@ -1,7 +1,5 @@
 """Old property files, read without loss: their values under the names of MF 6.2 where those mean the same."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Sentences of a conversion."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 

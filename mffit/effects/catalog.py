@@ -1,7 +1,5 @@
 """All effects, in one list: tyre, rig and environment compete. Those of the rig are made from its records of errors."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterator
 from importlib import resources

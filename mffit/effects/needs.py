@@ -1,7 +1,5 @@
 """What data must vary for an effect to be seen, in words; :mod:`mffit.diagnosis.needs` tests the points for it."""
 
-from __future__ import annotations
-
 NEEDS = {
     "curved": "a curved path",
     "spin": "a curved path or large camber",

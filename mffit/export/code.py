@@ -1,7 +1,5 @@
 """A property file as source code: how it is named after the file, and written as C99 or MATLAB."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping
 from functools import partial

@@ -1,7 +1,5 @@
 """The C compiler of the machine."""
 
-from __future__ import annotations
-
 import os
 import platform
 import shlex

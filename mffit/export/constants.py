@@ -1,7 +1,5 @@
 """Numbers of judgement of lookup tables: how close they come to the tyre, and how large they may be."""
 
-from __future__ import annotations
-
 from tir.constant import Count, Real
 
 TABLE_ERROR = Real(

@@ -1,7 +1,5 @@
 """A property file as a functional mock-up unit of FMI 2.0 or 3.0: description, C sources, binary for this machine."""
 
-from __future__ import annotations
-
 import hashlib
 import tempfile
 import uuid

@@ -1,7 +1,5 @@
 """The forms of lookup tables: what each holds of a tyre, and how its files are written (CSV, MATLAB)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Grids between whose nodes linear interpolation stays close to a function."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable, Iterable, Mapping

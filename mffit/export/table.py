@@ -1,7 +1,5 @@
 """A property file as lookup tables, one for each force."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Measured points as TYDEX files, release 1.3: one per sweep, with all digits of the numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Agreement of a model with measured values, channel by channel."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

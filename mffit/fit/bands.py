@@ -1,7 +1,5 @@
 """Widths of the 95 % bands inside the test plan and outside it: at other pressures and other sideslips."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 

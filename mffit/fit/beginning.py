@@ -1,7 +1,5 @@
 """What a fit begins with: known values, plan, starting values and problem; and a first fit, for plans while a test runs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Coefficients determined outside the main fit: from radii, rolling resistance or relaxation."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

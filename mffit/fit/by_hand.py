@@ -1,7 +1,5 @@
 """Settings of ``[coefficients]`` in tyre.toml, as the fit uses them: held values, bounds, priors and starting values."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """One record per coefficient: its value, its uncertainty and their origin."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

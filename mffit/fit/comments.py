@@ -1,7 +1,5 @@
 """Comments of the property file: origin and uncertainty of each value."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from mffit.fit import constants

@@ -1,7 +1,5 @@
 """Numbers of judgement of the fit, of the derived files and of the warnings."""
 
-from __future__ import annotations
-
 from tir.constant import Count, Real, Series
 
 # Weights

@@ -1,7 +1,5 @@
 """Physical limits that the fitted model keeps over the whole tested range, not only at the points."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple

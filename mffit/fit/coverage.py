@@ -1,7 +1,5 @@
 """Coefficients that the data determine, and the data that the other coefficients need."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 

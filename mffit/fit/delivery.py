@@ -1,7 +1,5 @@
 """The property files of a fit, from fitted, measured and estimated values."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """Random tyres drawn from the posterior of a fit."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any

@@ -1,7 +1,5 @@
 """The record of a finished fit: values, uncertainties and weights at the solution."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 

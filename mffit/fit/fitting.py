@@ -1,7 +1,5 @@
 """``fit``: property files from points and direct measurements."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Mapping
 from dataclasses import replace

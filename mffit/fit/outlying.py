@@ -1,7 +1,5 @@
 """Single readings that all others contradict: they get no weight, and the fit is repeated without them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """The joint fit: all free coefficients and rig errors together, fitted to all points."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Priors of the coefficients: from similar tyres, from the table's defaults, or from a fleet."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Collection, Mapping
 from pathlib import Path

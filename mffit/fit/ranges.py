@@ -1,7 +1,5 @@
 """Ranges of load, pressure, sideslip and camber: those of the data, and those written to the file."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any

@@ -1,7 +1,5 @@
 """Coefficients that can change together without changing any force, and the form that mffit writes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType

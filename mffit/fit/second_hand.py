@@ -1,7 +1,5 @@
 """Mx with the side force as read: what the formula misses of Mx must not bend the side force, which is measured itself."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from types import SimpleNamespace
 

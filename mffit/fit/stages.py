@@ -1,7 +1,5 @@
 """The stages of the parameter table: groups of coefficients with the channels that show them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from mffit.rig_errors import ZEROS, error_of

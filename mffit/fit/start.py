@@ -1,7 +1,5 @@
 """Starting values of the fit, read off the data."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Cornering stiffness on a straight path, from the fitted model and the measured stiffness on the disc."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple

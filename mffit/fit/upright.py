@@ -1,7 +1,5 @@
 """Friction and stiffness of the upright wheel on a straight path, and coefficients solved from measured values of these."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any

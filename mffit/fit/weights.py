@@ -3,8 +3,6 @@
 Residuals beyond the Huber threshold get a reduced weight, because a model may miss a stretch of a sweep by more than the noise.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from mffit.fit import constants

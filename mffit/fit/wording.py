@@ -1,7 +1,5 @@
 """Sentences about a fit: its files and their uses, what was modelled, ranges, sources, bands; and its warnings."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Numbers of judgement of the estimate of a fleet."""
 
-from __future__ import annotations
-
 from tir.constant import Real
 
 INFORMED_VARIANCE_SHARE = Real(

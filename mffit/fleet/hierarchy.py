@@ -5,8 +5,6 @@ Tyre i has numbers x_i, the rig has errors theta. The likelihood of its points i
 once for all tyres. Given tau this is a linear mixed model with the tyres as groups; expectation maximisation estimates tau^2.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The record of a fleet: the numbers of every specimen, and the joint estimate of each rig's tyres."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

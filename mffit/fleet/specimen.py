@@ -1,7 +1,5 @@
 """One build, read back from its folder."""
 
-from __future__ import annotations
-
 import json
 import math
 import tomllib

@@ -1,7 +1,5 @@
 """Forwards-backwards alignment of the sideslip axis, (6)-(10)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 

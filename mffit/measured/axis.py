@@ -4,8 +4,6 @@ alpha_M is determined from forward and backward zeros at all loads of a set-up. 
 ply-steer is a property of the tyre and may change with load.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from itertools import combinations

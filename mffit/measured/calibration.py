@@ -1,7 +1,5 @@
 """Multiplicative errors of the readings: calibration of a channel, compliance of the steering, errors that look like camber."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple

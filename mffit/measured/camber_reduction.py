@@ -4,8 +4,6 @@ Uncertain numbers are those of the ``uncertainties`` package: first-order propag
 R, which enters both r_e and C_phit.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

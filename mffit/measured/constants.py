@@ -1,7 +1,5 @@
 """Numbers of judgement of the direct method."""
 
-from __future__ import annotations
-
 from tir.constant import Count, Real, Series
 
 GUESSED_STIFFNESS_U = Real(

@@ -1,7 +1,5 @@
 """The direct method on a set of points: stiffnesses, turn-slip force, eps_gamma with budget, load by load."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace

@@ -3,8 +3,6 @@
 A tyre that warms up or wears changes its stiffness from sweep to sweep, so camber sweeps and zeros belong to different states.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple

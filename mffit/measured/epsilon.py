@@ -1,7 +1,5 @@
 """eps_gamma at one load: plain, corrected for finite spin, and from the moments; and its dependence on load."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -3,8 +3,6 @@
 The aligning moment pushes the wheel to one side of the play, so the true sideslip differs from the reading.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

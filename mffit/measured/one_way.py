@@ -5,8 +5,6 @@ The force follows the angle over the tyre's relaxation length: at ``dalpha/ds`` 
 by an axis that is misaligned.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ The turn-slip force is the reading at zero sideslip and camber (5), or the mean 
 of the play; the camber stiffness is the secant (20) of the camber sweep as read; the uncertainty is that of (22) and (24).
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Path radius (19) and effective rolling radius (18), with their uncertainties."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The records of the direct method."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Set-ups of the rig: results of each set-up alone, and the scatter of repeated set-ups beyond the declared uncertainty."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 

@@ -1,7 +1,5 @@
 """Uncertain numbers with named sources: generalised least squares of them, and uncertainty budgets (JCGM 100)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple

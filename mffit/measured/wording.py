@@ -1,7 +1,5 @@
 """Sentences of the direct method: notes, warnings, and statements on results for page and terminal."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Numbers of judgement of the decomposition by mirror symmetry."""
 
-from __future__ import annotations
-
 from tir.constant import Count, Real
 
 SAME_CAMBER = Real(0.25, "deg", "Camber angles within this are one set-point in the search for mirrors.")

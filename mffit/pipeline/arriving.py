@@ -1,7 +1,5 @@
 """The recordings of a project while they arrive: which are complete, how they are read, and which are still being written."""
 
-from __future__ import annotations
-
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple

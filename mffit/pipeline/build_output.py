@@ -1,7 +1,5 @@
 """The files that a build writes."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """``mffit build``: sweeps to property files."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """``mffit compare``: two files, a file and data, or two builds."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace

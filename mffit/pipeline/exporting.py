@@ -1,7 +1,5 @@
 """``mffit export tydex``: the points of a project for other programs."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from mffit import config as configuration

@@ -1,7 +1,5 @@
 """What the user of a fleet should know: unlike tyres, several rigs, outlying tyres, declarations that are too tight."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Mapping, Sequence
 

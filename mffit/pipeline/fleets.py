@@ -1,7 +1,5 @@
 """``mffit fleet``: many builds of one rig, compared and combined."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """The files that a command reads."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Collection, Sequence
 from pathlib import Path

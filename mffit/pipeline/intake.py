@@ -1,7 +1,5 @@
 """From recordings to a project: ``mffit sniff`` and ``mffit init --from``."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress

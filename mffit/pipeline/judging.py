@@ -1,7 +1,5 @@
 """Whether a build is to be trusted: what the rules need, and their judgement."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 

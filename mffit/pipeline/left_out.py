@@ -1,7 +1,5 @@
 """Readings that the fit gives no weight or less weight, and sweeps that it doubts, as entries of one list."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import Any
 

@@ -1,7 +1,5 @@
 """``mffit build A.toml B.toml ...``: many tyres, one after the other, in processes or on a Dask cluster."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import threading

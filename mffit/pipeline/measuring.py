@@ -1,7 +1,5 @@
 """``mffit spin`` and ``mffit align``: measurements that need no tyre model."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The road of a build: its numbers, and what would make them better."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

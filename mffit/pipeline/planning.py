@@ -1,7 +1,5 @@
 """``mffit plan``: which further runs would lower an uncertainty most."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The origin of a property file: what its comments state, written and read."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """The fit, and what it adds to the direct measurements: rejected readings, the bias of finite spin, stiffnesses at rest."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

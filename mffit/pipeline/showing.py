@@ -1,7 +1,5 @@
 """``mffit show``: property files, or projects with their measured points, as pages without a server."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import MappingProxyType

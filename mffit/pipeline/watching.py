@@ -1,7 +1,5 @@
 """``mffit watch``: what the files of a campaign say while it runs."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace

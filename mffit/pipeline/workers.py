@@ -1,7 +1,5 @@
 """Builds in processes of their own, on this machine or on a Dask cluster."""
 
-from __future__ import annotations
-
 import contextlib
 import multiprocessing
 import os

@@ -1,7 +1,5 @@
 """The goals of a plan: numbers whose uncertainty should decrease."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import dataclass
 

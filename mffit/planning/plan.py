@@ -1,7 +1,5 @@
 """Identifiability by the present sweeps, and a short list of runs: each step takes the run that lowers the uncertainty most."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from itertools import combinations

@@ -1,7 +1,5 @@
 """The band of the road after further runs, by the linear models of the residuals from which ``predict`` takes its uncertainty."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

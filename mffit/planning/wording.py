@@ -1,7 +1,5 @@
 """The sentences about a plan, for page, terminal and JSON."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

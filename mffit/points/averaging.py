@@ -1,7 +1,5 @@
 """Points from means of a recording over its steady stretches and along its sweeps."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Choice of the stretches of a recording that become points, without their transients; reasons for dropping the others."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Times of samples: correction of rounded times, the common clock of several recordings; distance rolled, sense of a sweep."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Sequence
 from dataclasses import replace

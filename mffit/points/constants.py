@@ -1,7 +1,5 @@
 """Numbers of judgement of reading and reduction."""
 
-from __future__ import annotations
-
 from tir.constant import Count, Real, Series
 
 # Levels of the set-points; those of camber and sideslip are UPRIGHT and STRAIGHT of mffit/constants.py. A tolerance is three

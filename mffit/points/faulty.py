@@ -1,7 +1,5 @@
 """Detection of faulty samples: missing readings, no load, stuck and clipped channels, spikes."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """The record of readings that were left out or have reduced weight, and the entries found when files become points."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal

@@ -1,7 +1,5 @@
 """Points under like conditions: curves, and mean side forces, by which sweeps and files are compared."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 

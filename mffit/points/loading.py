@@ -1,7 +1,5 @@
 """All sweeps of a configuration, or a single table, as points."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Settings that move through the recordings while the points made from them stay at one place."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The mean of a record with autocorrelated noise, and its standard error."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Misfit over the stated noise, and noise estimated from neighbouring readings."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Points from one sweep: finished rows unchanged, recordings averaged over steady stretches and along moving sweeps."""
 
-from __future__ import annotations
-
 from types import MappingProxyType
 from typing import NamedTuple
 

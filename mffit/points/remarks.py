@@ -1,7 +1,5 @@
 """Table rows about every stretch of a recording, and sentences about left-out samples and stretches."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

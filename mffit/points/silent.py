@@ -1,7 +1,5 @@
 """Moments whose readings do not differ from noise: they count as not measured."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.special import fdtrc
 

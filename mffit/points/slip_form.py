@@ -4,8 +4,6 @@ Slip of the Magic Formula is ``omega r / V - 1``. Laboratories also divide by th
 the larger of both speeds. In the right form, the radius ``r`` that slip and speeds imply does not change with the slip.
 """
 
-from __future__ import annotations
-
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np

@@ -4,8 +4,6 @@ The division uses only the settings (angles, slip, load, pressure, speed). Later
 remove transients and to drop plateaus that never settle.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """Samples from recordings with steps of the sideslip angle or of slip, for the relaxation length."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple

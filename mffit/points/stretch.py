@@ -1,7 +1,5 @@
 """The record of one stretch of a recording: its kind, and the reason if it is dropped."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Files whose forces differ under like conditions, as those of two tyres do."""
 
-from __future__ import annotations
-
 import itertools
 from typing import NamedTuple
 

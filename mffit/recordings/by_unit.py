@@ -4,8 +4,6 @@ If pressure, speed or time is missing and only one unused column is in a unit of
 the unit fits several channels, or several columns fit, the question proposes the column whose heading has fitting words.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Mapping, Sequence
 

@@ -1,7 +1,5 @@
 """Numbers of judgement by which the units of recordings are guessed."""
 
-from __future__ import annotations
-
 from tir.constant import Count, Real, Series
 
 PERCENTILE_OF_SIZE = Real(

@@ -1,7 +1,5 @@
 """Signs that recordings were made on a disc; without them its curved path would be taken for a straight one."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from pathlib import Path

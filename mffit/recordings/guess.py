@@ -4,8 +4,6 @@ A heading is a channel only if the whole heading is a name that laboratories use
 states none, it is the unit in which the numbers are plausible (``unstated``); the guess says so, for the user to check.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Mapping
 from typing import NamedTuple

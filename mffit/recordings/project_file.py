@@ -1,7 +1,5 @@
 """The ``tyre.toml`` for recordings: every value that they state, with comments that name its source."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections import Counter

@@ -1,7 +1,5 @@
 """One recording: its channels, by its headings, a user's choices and what else it says; or why it cannot be read."""
 
-from __future__ import annotations
-
 import math
 import re
 import unicodedata

@@ -1,7 +1,5 @@
 """The column of longitudinal slip with its unit, sign and reference radius, found from the slip at which Fx is zero."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """``mffit sniff``: channels, conditions and axes of recordings; the axes are those that agree with physics."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Quality flags and specimens from the summary of a test: a table next to the recordings, with a row per run."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path

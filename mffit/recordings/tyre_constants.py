@@ -1,7 +1,5 @@
 """What recordings state about the tyre: constants of a TYDEX file, or columns of one value under their names."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

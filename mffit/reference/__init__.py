@@ -1,7 +1,5 @@
 """Pages of the documentation that are written from records: ``python -m mffit.reference docs``."""
 
-from __future__ import annotations
-
 import importlib
 import pkgutil
 from collections.abc import Iterator

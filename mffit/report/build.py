@@ -1,7 +1,5 @@
 """The build report: plots/*.png and report.html, and THE table of its pictures."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from itertools import groupby

@@ -1,7 +1,5 @@
 """What several pictures of a build draw, taken from its result once."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """The page of a comparison: plots and compare.html, and THE table of its pictures."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path

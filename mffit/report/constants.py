@@ -1,7 +1,5 @@
 """Numbers of judgement of the reports: how much a picture, a page and a terminal show, and at which scale."""
 
-from __future__ import annotations
-
 from tir.constant import Count, Real, Series
 
 POINTS_PER_SERIES = Count(

@@ -1,7 +1,5 @@
 """Points of one curve, curves of one panel, and the model as a line along a curve, for the pictures only."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The diagnosis page: plots/*.png and diagnosis.html, and THE table of its pictures."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Texts at the axes and above the panels of the pictures."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """The numbers behind a figure as a table, from which a reader can draw it again."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 

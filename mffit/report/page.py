@@ -1,7 +1,5 @@
 """One self-contained HTML file: a filled template with its pictures."""
 
-from __future__ import annotations
-
 import base64
 import io
 import zipfile

@@ -1,7 +1,5 @@
 """How all pictures look: matplotlib's settings, and colours that differ for any colour vision and in grey print."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Typography of a page: ASCII symbols of sentences, which terminal and JSON need, become HTML."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from html import escape, unescape

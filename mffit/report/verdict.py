@@ -1,7 +1,5 @@
 """The first facts about a build: whether to trust it, its main numbers, and which file is for which use."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from mffit.comparison.characteristics import DECIDED_BY, Tested, characteristics

@@ -1,7 +1,5 @@
 """Words for the numbers of a fit and of a diagnosis: people read these instead of keys of the rig."""
 
-from __future__ import annotations
-
 from mffit.rig.simulation import SWITCH
 from mffit.rig_errors import error_of, shown, words_of
 from mffit.rig_errors import unit_of as rig_unit_of

@@ -1,7 +1,5 @@
 """The results of one build, and its outcome among many builds."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Quantities of a point that depend on the other points: distance rolled, sense of the sweep, usual path and speed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cached_property
 from typing import NamedTuple

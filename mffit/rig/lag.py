@@ -1,7 +1,5 @@
 """First-order lag of the sideslip angle or of longitudinal slip along continuous sweeps, and of moves between two samples."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from mffit.points import Points

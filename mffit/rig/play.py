@@ -1,7 +1,5 @@
 """Play of the steering axis: the sideslip at which the tyre's moment holds a wheel that can turn between two stops."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

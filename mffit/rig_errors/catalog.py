@@ -1,7 +1,5 @@
 """All rig errors in one list, in the order of the chain from set-point readings to force readings."""
 
-from __future__ import annotations
-
 import tomllib
 from importlib import resources
 from typing import Any

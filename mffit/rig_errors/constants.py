@@ -1,7 +1,5 @@
 """Numbers of judgement of the rig errors; usual sizes and limits are in the records themselves."""
 
-from __future__ import annotations
-
 from tir.constant import Real
 
 FORCE_GAIN = Real(

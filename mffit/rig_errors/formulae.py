@@ -4,8 +4,6 @@ A formula takes the number of the error, the quantity before it and the state ``
 returns the quantity after it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The record of a rig error: everything that the program needs to know about it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Limits of the suspicions, and what the checks behind them need."""
 
-from __future__ import annotations
-
 from tir.constant import Count, Real, Series
 
 # Slopes and forces whose sign all tyres share

@@ -4,8 +4,6 @@ Every alternative is tried on the data. A misaligned sideslip axis is not mistak
 without reversing a slope.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import NamedTuple

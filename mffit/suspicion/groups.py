@@ -1,7 +1,5 @@
 """Groups of points that would share a mistake: every sweep, and every condition of a sweep with several conditions."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 

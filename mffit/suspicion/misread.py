@@ -3,8 +3,6 @@
 Its sign is reversed, its unit is wrong, or its label states a wrong load, camber or pressure.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """Check by names and by the measured radii that all readings are of one tyre, and of the declared one."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """Single outlying readings: they are listed and have zero weight in the fit."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 

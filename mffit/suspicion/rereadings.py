@@ -3,8 +3,6 @@
 A recording mistake is undone; an offset or gain of the rig is fitted to the errors.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass

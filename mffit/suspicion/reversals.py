@@ -1,7 +1,5 @@
 """Readings where a moving sweep turns back: the rig accelerates there, so its inertia and filters distort the readings."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import NamedTuple

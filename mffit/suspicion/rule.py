@@ -1,7 +1,5 @@
 """Record of a rule of suspicion, and the decorators that make one from a finder."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum

@@ -4,8 +4,6 @@ Each rule is defined in the module of its finder. Two checks are elsewhere: ``sw
 column when it reads a file, and the fit decides the weight of single readings.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from mffit.config import Config

@@ -4,8 +4,6 @@ Numbers in a wrong unit can be plausible one by one and impossible in combinatio
 them or a known mistake explains them; otherwise they are asked for.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 

@@ -5,8 +5,6 @@ sideslip, and the turn-slip force has the sign of phi_t: it points away from the
 rises with the sideslip reading.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial

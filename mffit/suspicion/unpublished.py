@@ -1,7 +1,5 @@
 """The camber reduction factors of published tyres, and likely causes of one that is far from them."""
 
-from __future__ import annotations
-
 import math
 import statistics
 from collections.abc import Iterator

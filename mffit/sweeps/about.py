@@ -1,7 +1,5 @@
 """Title of a test and name of its tyre, from the lines above the readings of a file or from a column."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Mapping

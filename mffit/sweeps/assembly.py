@@ -1,7 +1,5 @@
 """Conversion of a file's columns to sweeps in ISO-W and SI; only this module converts a rig's signs."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The columns that a sweep file may have, from ``channels.csv``."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Iterable
 from dataclasses import dataclass

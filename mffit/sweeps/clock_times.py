@@ -1,7 +1,5 @@
 """Columns of clock times, such as ``2026-03-01T12:03:04.5``, as seconds."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

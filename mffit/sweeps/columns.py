@@ -1,7 +1,5 @@
 """Conversion of a file's cells to the contract's columns, in the contract's units and the rig's own axes."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field

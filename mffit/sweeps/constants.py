@@ -1,7 +1,5 @@
 """Numbers of judgement of the readers; the plausible range of each channel is in ``channels.csv``."""
 
-from __future__ import annotations
-
 from tir.constant import Count, Real
 
 SMALLEST_LOAD_IN_NEWTONS = Real(20.0, "N", "If all loads of a file are below this, they are in kilonewtons.")

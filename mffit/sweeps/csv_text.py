@@ -3,8 +3,6 @@
 The first lines show separator, decimal comma and headings; pandas reads the rows below them.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import re

@@ -1,7 +1,5 @@
 """Functions that several readers share: bytes of a file, libraries imported when needed, errors about damaged files."""
 
-from __future__ import annotations
-
 import gzip
 import importlib
 import zlib

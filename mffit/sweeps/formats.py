@@ -1,7 +1,5 @@
 """The file formats of sweeps; a new format needs a reader and one record in ``FORMATS``."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar

@@ -1,7 +1,5 @@
 """Title, headings and units from the rows above the data of a text table or spreadsheet."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Sweeps in ISO-W from all files of a configuration, or from a single file."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress

@@ -7,8 +7,6 @@ a structure ``channel`` with the order of the vectors (``name``) and their ``uni
 Only numbers and texts are read, never objects, functions or anything else that could run as code.
 """
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess

@@ -4,8 +4,6 @@
 for :func:`mffit.sweeps.matlab.read_mat`. If the file cannot be read, it writes the reason to OUT/trouble.txt.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import struct

@@ -1,7 +1,5 @@
 """Names of the vectors in MATLAB's structures, one within another."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The reader of Excel workbooks: the only visible sheet with data, or the one that is named (``book.xlsx#Sheet``)."""
 
-from __future__ import annotations
-
 import zipfile
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager

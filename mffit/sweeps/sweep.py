@@ -1,7 +1,5 @@
 """The record of one sweep: measured rows in ISO-W and SI."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

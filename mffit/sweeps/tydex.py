@@ -1,7 +1,5 @@
 """The reader of TYDEX files: fixed or free columns, constants, factors and offsets; see :mod:`mffit.sweeps.tydex_format`."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import NamedTuple

@@ -3,8 +3,6 @@
 pint is imported only when a unit is named. ``unit_spellings.csv`` translates laboratories' spellings that pint does not know.
 """
 
-from __future__ import annotations
-
 import csv
 import re
 from functools import cache

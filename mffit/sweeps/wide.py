@@ -1,7 +1,5 @@
 """Tables with the load in the names of their columns (``Sa400``, ``Fy400``, ``Sa800``, ...), one set of columns for each load."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The scripts of the pages: ES modules in the folder ``scripts``, joined to one text when a page is written."""
 
-from __future__ import annotations
-
 import re
 from importlib.resources import files
 

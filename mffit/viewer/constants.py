@@ -1,7 +1,5 @@
 """Numbers of judgement of the pages with curves and points."""
 
-from __future__ import annotations
-
 from tir.constant import Count, Real
 
 SLIDER_LEAST = Real(

@@ -1,7 +1,5 @@
 """What the page of files draws and what moves it: panels, and sliders with their ranges for the tyres of the page."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

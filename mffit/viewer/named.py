@@ -1,7 +1,5 @@
 """The tyres of a page: read from their files, with different names and with their ranges."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Columns of numbers in a page: typed arrays, compressed, as text within its JSON."""
 
-from __future__ import annotations
-
 import base64
 import zlib
 from collections.abc import Mapping

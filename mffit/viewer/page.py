@@ -1,7 +1,5 @@
 """One HTML file that evaluates tyres by itself: parameters as JSON, equations as JavaScript, no network."""
 
-from __future__ import annotations
-
 import hashlib
 import html
 import os

@@ -1,7 +1,5 @@
 """A project as a page: measured points, curves, and coefficients that move them at once."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The measured points of a project as columns for a page."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """A virtual test campaign in memory: tables, tyre.toml and truth from a plan."""
 
-from __future__ import annotations
-
 import math
 import zlib
 from collections.abc import Mapping, Sequence

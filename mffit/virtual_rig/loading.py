@@ -1,7 +1,5 @@
 """A :class:`RigPlan` from ``rig.toml``, or an InputError that says what to correct."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

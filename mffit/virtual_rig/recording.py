@@ -1,7 +1,5 @@
 """A sweep as a time series of a data logger: with motion of the steering, noise and ripple."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

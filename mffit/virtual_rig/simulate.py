@@ -1,7 +1,5 @@
 """``mffit simulate``: writes a folder of sweeps, which ``mffit build`` reads, from rig.toml."""
 
-from __future__ import annotations
-
 import gzip
 import json
 import shutil

@@ -1,7 +1,5 @@
 """Tables of the rig: columns with the names and units of docs/files.md, in the rig's own axes and frame."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 

@@ -1,7 +1,5 @@
 """The true values of the direct method's quantities, from the tyre itself."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field

@@ -1,7 +1,5 @@
 """The addresses of a window: its page, the state and the data as JSON, the changes, the runs and their pages."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 from collections.abc import AsyncIterator, Awaitable, Callable, Mapping

@@ -1,7 +1,5 @@
 """Numbers of judgement of the local window."""
 
-from __future__ import annotations
-
 from tir.constant import Count, Real
 
 LOOK_AGAIN = Real(0.2, "s", "Time between looks at tyre.toml and at the progress: faster than one notices.")

@@ -1,7 +1,5 @@
 """Changes to the text of ``tyre.toml`` that keep its comments and its formatting; no file is touched here."""
 
-from __future__ import annotations
-
 import re
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Access to the window: only from this machine, by its own address, with the cookie of a browser that was let in."""
 
-from __future__ import annotations
-
 import secrets
 from collections.abc import Awaitable, Callable, MutableMapping
 from typing import Any

@@ -1,7 +1,5 @@
 """Recordings are read in a separate process, which can be stopped: the content of a file is not known beforehand."""
 
-from __future__ import annotations
-
 import multiprocessing
 import signal
 import threading

@@ -1,7 +1,5 @@
 """A folder of recordings in the window: what is recognised, as a table to correct, and the project made of it."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager

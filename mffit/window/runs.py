@@ -1,7 +1,5 @@
 """The runs that a window starts, each in a process of its own, so that it can be stopped."""
 
-from __future__ import annotations
-
 import contextlib
 import multiprocessing
 import os

@@ -1,7 +1,5 @@
 """An open project, shared by all windows of a server: its tyre.toml with undo, the last fits, the current run."""
 
-from __future__ import annotations
-
 import contextlib
 import difflib
 import hashlib

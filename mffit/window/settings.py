@@ -1,7 +1,5 @@
 """Settings of ``tyre.toml`` other than coefficients: every key of its tables that is one value, read off the models."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin

@@ -1,7 +1,5 @@
 """A tyre as a function of an array library, to be differentiated by it, from the same equations as CasADi's."""
 
-from __future__ import annotations
-
 from collections import namedtuple
 from collections.abc import Callable
 from inspect import Parameter, Signature

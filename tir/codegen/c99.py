@@ -1,7 +1,5 @@
 """A tyre as one self-contained C99 header and source, from the same equations."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple, Unpack
 

@@ -1,7 +1,5 @@
 """A tyre as a function of CasADi, with its exact derivatives, from the same equations. Imports casadi on first use."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, Unpack
 

@@ -1,7 +1,5 @@
 """Numbers of judgement of the generated code."""
 
-from __future__ import annotations
-
 from tir.constant import Count
 
 VECTOR_LANES = Count(

@@ -1,7 +1,5 @@
 """The model as JavaScript, for pages that evaluate tyres without Python."""
 
-from __future__ import annotations
-
 from tir.codegen.program import INPUTS, Switches, called, trace
 from tir.codegen.source import COMMON, FUNCTIONS, SourceDialect, assignments
 from tir.equations.forces import Forces

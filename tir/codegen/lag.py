@@ -1,7 +1,5 @@
 """The tyre with the lag of its contact as programs: the deflection after a step, and the forces of a deflection."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """A program in the functions of another library: CasADi's symbols, or the arrays of numpy, JAX, torch and CuPy."""
 
-from __future__ import annotations
-
 import operator
 from collections.abc import Callable, Mapping
 from functools import partial

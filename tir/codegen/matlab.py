@@ -1,7 +1,5 @@
 """A tyre as one vectorised MATLAB function, from the same equations; Octave runs it too."""
 
-from __future__ import annotations
-
 import re
 import textwrap
 from collections.abc import Collection, Iterable, Mapping, Sequence

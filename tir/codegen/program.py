@@ -1,7 +1,5 @@
 """A recorded run of the model: the operations per tyre and those per operating condition."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache

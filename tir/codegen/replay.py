@@ -3,8 +3,6 @@
 The derivatives are more operations of the same graph; their rules are those of :mod:`tir.derivatives`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cache, lru_cache
 from threading import RLock

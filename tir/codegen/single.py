@@ -1,7 +1,5 @@
 """The model for one operating condition in Python's own floats: no array, no compiler."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache

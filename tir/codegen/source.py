@@ -1,7 +1,5 @@
 """A program as text: assignments in the syntax of a language."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence

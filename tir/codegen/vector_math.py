@@ -6,8 +6,6 @@ Each polynomial interpolates its function at the Chebyshev nodes of a reduced ra
 The numbers are those of :mod:`tir.codegen.instructions`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Aligning moment Mz: trail, residual torque and moment arm of Fx."""
 
-from __future__ import annotations
-
 from tir.equations.elementary import (
     absolute,
     arctan,

@@ -3,8 +3,6 @@
 u is forwards and v to the right [m]; slip speeds Vsx, Vsy [m/s]; sigma_x, sigma_y [m].
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from tir.equations.elementary import absolute, arctan, cos, exp, pi, select, sign

@@ -1,7 +1,5 @@
 """The only functions the equations call: numpy's, except where numpy's own would break a complex step."""
 
-from __future__ import annotations
-
 import numpy as np
 
 arccos = np.arccos

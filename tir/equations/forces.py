@@ -1,7 +1,5 @@
 """All six outputs, composed in the order of the source."""
 
-from __future__ import annotations
-
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from tir.equations import aligning, lateral, longitudinal, overturning, rolling, stiffness, turn_slip

@@ -1,7 +1,5 @@
 """Side force Fy."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from tir.equations.elementary import (

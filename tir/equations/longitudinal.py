@@ -1,7 +1,5 @@
 """Longitudinal force Fx."""
 
-from __future__ import annotations
-
 from tir.equations.elementary import at_most_one, away_from_zero, cos, cos_arctan, magic_angle, sign, sin
 from tir.equations.normalise import Inputs, WeightFactors
 from tir.equations.turn_slip import Spin

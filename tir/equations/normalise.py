@@ -1,7 +1,5 @@
 """Inputs of the Magic Formula: normalised load and pressure, slips, effective rolling radius, spin."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from tir.equations.elementary import arctan, away_from_zero, cos, sin, tan

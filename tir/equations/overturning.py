@@ -1,7 +1,5 @@
 """Overturning moment Mx."""
 
-from __future__ import annotations
-
 from tir.equations.elementary import absolute, arctan, cos, sin
 from tir.equations.normalise import Inputs
 

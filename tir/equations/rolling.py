@@ -1,7 +1,5 @@
 """Rolling resistance moment My."""
 
-from __future__ import annotations
-
 from tir.equations.elementary import TINY, absolute, pi, real, select, sin
 from tir.equations.normalise import Inputs
 

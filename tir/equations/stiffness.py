@@ -1,7 +1,5 @@
 """Slip stiffnesses and friction coefficients: the quantities that several forces share."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from tir.equations.elementary import absolute, arctan, exp, sin

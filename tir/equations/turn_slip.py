@@ -4,8 +4,6 @@ The signs are those of z-up axes: the camber part of the spin, the shift of the 
 go together, so that camber alone gives the side force of the model without turn slip, times R0/Re.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from tir.equations.elementary import (

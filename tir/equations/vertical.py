@@ -3,8 +3,6 @@
 Q_CAM is the stiffness over camber of older versions; the equations of 6.2 have Q_CAM1-3 instead.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from tir.equations.elementary import TINY, absolute, real, select, sqrt, tan

@@ -1,7 +1,5 @@
 """Correlation of the tyre's temperature with settings of the test plan, and the uncertainty that it causes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Records of modelled influences for report and result.json: differences between runs, and the file at one temperature."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

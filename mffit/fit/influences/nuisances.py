@@ -1,7 +1,5 @@
 """Nuisance parameters of the tyre's state and of the rig that a fit may free in addition to the coefficients, in one list."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The fit of the plain file, and the fit with all chosen influences of :mod:`mffit.fit.influences.nuisances`."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 

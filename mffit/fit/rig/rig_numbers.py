@@ -1,7 +1,5 @@
 """The declared rig errors as free or held numbers of the fit, each with its prior."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Mapping, Sequence
 

@@ -4,8 +4,6 @@ The turn-slip force determines the ratio of camber stiffness to 1 - PECP1. Witho
 file's, and its uncertainty contributes to that of PECP1.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The effective rolling radius, and the coefficients of rolling resistance from the measured moment My."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Differences between a written file and the fitted model, over the ranges of the file."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

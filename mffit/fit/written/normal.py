@@ -1,7 +1,5 @@
 """The derived files: one for simulations without turn slip, and one compromise for simulations with and without it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """Conditions on a straight path over the ranges of a file, their weights, and the forces of a file at them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any, NamedTuple

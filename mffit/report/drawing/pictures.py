@@ -1,7 +1,5 @@
 """A sheet drawn once by matplotlib: the whole as a PNG, and its panels cut out of it for a page to arrange."""
 
-from __future__ import annotations
-
 import base64
 import io
 import re

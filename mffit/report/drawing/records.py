@@ -1,7 +1,5 @@
 """What a picture shows: a sheet of panels, a panel's axes, and its series in the units of the axes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 

@@ -1,7 +1,5 @@
 """The file's curves: how certain they are, and the files of both uses side by side."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Raw readings with their odd and even parts, and the even part with the model's, of the pure sweeps."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The model against the points: at a glance, and at every load, pressure and camber."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """The gap between simulation and measurement, before and after what the diagnosis added."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

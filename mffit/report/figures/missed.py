@@ -1,7 +1,5 @@
 """The model error: smooth and alike in all sweeps."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Loaded radius and rolling radius of the file over load at each pressure, with the readings that they were fitted to."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 
 import numpy as np

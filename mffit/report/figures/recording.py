@@ -1,7 +1,5 @@
 """A recording over time: settings and forces, with the stretches that give points and those that give none."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where the model misses: measured minus model over sideslip and camber, one map per load and pressure."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

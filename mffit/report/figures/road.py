@@ -1,7 +1,5 @@
 """The tyre on a straight path over sideslip: the best estimate with its bands, and the file for turn slip off."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

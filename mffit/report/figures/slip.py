@@ -1,7 +1,5 @@
 """Driving, braking and combined slip: the friction ellipse."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

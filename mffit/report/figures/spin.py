@@ -1,7 +1,5 @@
 """The camber reduction factor: among published tyres, its budget, its course over load; and the alignment."""
 
-from __future__ import annotations
-
 import textwrap
 from dataclasses import replace
 

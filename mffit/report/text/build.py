@@ -1,7 +1,5 @@
 """The summary of a build, for the terminal: one screen, and the rest on request."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 

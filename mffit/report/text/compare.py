@@ -1,7 +1,5 @@
 """A comparison, for the terminal."""
 
-from __future__ import annotations
-
 from mffit.comparison import Comparison, Difference, wording
 from mffit.quantities import CHANNELS
 from mffit.report.text.layout import blocks, lines_left, paragraphs, tables_within, wrapped

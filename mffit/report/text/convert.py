@@ -1,7 +1,5 @@
 """A conversion, for the terminal."""
 
-from __future__ import annotations
-
 from mffit.conversion import Conversion, wording
 from mffit.conversion.result import ROUNDING, RegionMisfit
 from mffit.quantities import MODEL

@@ -1,7 +1,5 @@
 """A diagnosis, for the terminal."""
 
-from __future__ import annotations
-
 from mffit.diagnosis import Diagnosis, wording
 from mffit.diagnosis.notes import NotVisible
 from mffit.effects import NEEDS

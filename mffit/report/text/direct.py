@@ -1,7 +1,5 @@
 """The direct method and the alignment, for the terminal."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Sequence
 

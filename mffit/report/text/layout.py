@@ -1,7 +1,5 @@
 """Tables and paragraphs in ASCII."""
 
-from __future__ import annotations
-
 import re
 import textwrap
 from collections.abc import Iterable, Sequence

@@ -1,7 +1,5 @@
 """Many builds and many tyres, for the terminal."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from mffit.fleet import Fleet

@@ -1,7 +1,5 @@
 """A plan, for the terminal."""
 
-from __future__ import annotations
-
 from mffit.planning import Plan, wording
 from mffit.report.text import filling
 

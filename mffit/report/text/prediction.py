@@ -1,7 +1,5 @@
 """What ``mffit predict`` prints."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pandas as pd

@@ -1,7 +1,5 @@
 """The content of recordings, for the terminal."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

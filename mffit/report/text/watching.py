@@ -1,7 +1,5 @@
 """A campaign that is being run, for the terminal."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from mffit.constants import NAMED_IN_SENTENCE

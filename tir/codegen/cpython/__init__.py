@@ -1,7 +1,5 @@
 """Machine code as a built-in function of CPython: the only place that knows CPython's C interface."""
 
-from __future__ import annotations
-
 import numpy as np
 
 SCALARS = frozenset({float, int, bool, np.float64, np.float32, np.int64, np.int32})

@@ -5,8 +5,6 @@ addresses of the types that a scalar call takes. Arguments
 follow CPython's C interface METH_FASTCALL, without a converting layer between the call and the arithmetic.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple

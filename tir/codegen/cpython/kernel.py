@@ -3,8 +3,6 @@
 The name of the folder is a hash of everything that the machine code depends on.
 """
 
-from __future__ import annotations
-
 import ctypes
 import importlib.util
 import os
