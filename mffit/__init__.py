@@ -52,18 +52,7 @@ for _other in ("mffit-tir", "tir"):
 
 if TYPE_CHECKING:
     from mffit.export import write_c, write_fmu, write_matlab, write_table
-    from mffit.pipeline import (
-        align,
-        build,
-        compare,
-        diagnose,
-        plan,
-        predict,
-        show,
-        spin,
-        watch,
-        write_tydex,
-    )
+    from mffit.pipeline import align, build, compare, diagnose, plan, predict, show, spin, watch, write_tydex
 
     __version__: str
 

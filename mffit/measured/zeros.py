@@ -9,14 +9,7 @@ import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config, path_curvature
-from mffit.constants import (
-    FALSE_ALARM,
-    SAME_SIDESLIP,
-    STRAIGHT,
-    UPRIGHT,
-    USUAL_U_FORCE,
-    USUAL_U_MOMENT,
-)
+from mffit.constants import FALSE_ALARM, SAME_SIDESLIP, STRAIGHT, UPRIGHT, USUAL_U_FORCE, USUAL_U_MOMENT
 from mffit.measured import constants, wording
 from mffit.measured.axis import slope_at
 from mffit.measured.uncertain import combined, named, polynomial

@@ -21,13 +21,7 @@ from mffit.pipeline.building import build
 from mffit.pipeline.inputs import inputs_of, project_of, read_base
 from mffit.pipeline.measuring import epsilon_gamma, measure
 from mffit.pipeline.refining import spin_of_model, undistorted
-from mffit.planning import (
-    Goal,
-    NextRun,
-    Plan,
-    next_run,
-    read_goal,
-)
+from mffit.planning import Goal, NextRun, Plan, next_run, read_goal
 from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT
 from mffit.planning.plan import U
 from mffit.planning.prospect import Direct, DirectProspect, DirectU, Prospect, nominal_load

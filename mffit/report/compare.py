@@ -13,17 +13,7 @@ from mffit.quantities import CHANNELS
 from mffit.report import labels, page, style
 from mffit.report.build_view import Overlay, channel_rows
 from mffit.report.curves import curves, model_lines
-from mffit.report.drawing.records import (
-    NOTHING,
-    Axis,
-    Bars,
-    Look,
-    Panel,
-    Sheet,
-    Trace,
-    in_rows,
-    listed,
-)
+from mffit.report.drawing.records import NOTHING, Axis, Bars, Look, Panel, Sheet, Trace, in_rows, listed
 from mffit.report.figures import fit
 from mffit.rounding import number
 

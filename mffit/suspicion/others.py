@@ -25,15 +25,7 @@ from mffit.rig import Simulation
 from mffit.scatter import rms, usual_size
 from mffit.suspicion import constants
 from mffit.suspicion.groups import Group, confirmed_by_others, groups
-from mffit.suspicion.rereadings import (
-    Away,
-    Errors,
-    Mistake,
-    certain_mistakes,
-    explaining,
-    explanation,
-    moved,
-)
+from mffit.suspicion.rereadings import Away, Errors, Mistake, certain_mistakes, explaining, explanation, moved
 from mffit.suspicion.rule import Facts, Outcome, When, rule
 from tir.frozen import ReadOnlyArrays
 

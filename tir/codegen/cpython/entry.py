@@ -15,15 +15,7 @@ from tir.codegen import vector_math
 from tir.codegen.constants import DIVISION_TAKES
 from tir.codegen.cpython import SCALARS
 from tir.codegen.graph import OPERATORS, UFUNCS
-from tir.codegen.instructions import (
-    DOUBLE,
-    INTEGER,
-    SHORT,
-    VectorValue,
-    in_every_lane,
-    repeated,
-    select,
-)
+from tir.codegen.instructions import DOUBLE, INTEGER, SHORT, VectorValue, in_every_lane, repeated, select
 from tir.codegen.program import INPUTS, Program, computed
 from tir.codegen.source import FUNCTIONS
 
