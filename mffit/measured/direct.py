@@ -1,7 +1,7 @@
 """The direct method on a set of points: stiffnesses, turn-slip force, eps_gamma with budget, load by load."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import chain
 from typing import Any, NamedTuple
@@ -37,16 +37,7 @@ from mffit.measured.evidence import DirectEvidence, evidence_of, rest_of_play
 from mffit.measured.one_way import one_way_lag
 from mffit.measured.published import published
 from mffit.measured.radii import effective_radius_at
-from mffit.measured.result import (
-    NO_FIT,
-    AfterFit,
-    LoadDependence,
-    LoadResult,
-    Measured,
-    MeasuredFacts,
-    SideslipZeros,
-    SpinStatement,
-)
+from mffit.measured.result import NO_FIT, AfterFit, LoadDependence, LoadResult, Measured, SideslipZeros
 from mffit.measured.setups import excess_forces, results_of_setups, setup_scatter, warnings_of_setups
 from mffit.measured.stiffnesses import LoadSlopes, assumed_stiffness, cornering_stiffness, load_slopes
 from mffit.measured.turning import Turning, turning
@@ -61,17 +52,10 @@ from mffit.scatter import ALARM
 from tir import Quantity, Tyre
 
 COMPLIANCE = BY_NAME["compliance_deg_per_Nm"]
-Judge = Callable[[MeasuredFacts], SpinStatement]
-"""Judges direct measurements before they are stated; without it a build judges its whole result."""
 
 
 def measure(
-    config: Config,
-    points: Points,
-    parts: Parts,
-    base: Tyre | None = None,
-    after: AfterFit = NO_FIT,
-    judge: Judge | None = None,
+    config: Config, points: Points, parts: Parts, base: Tyre | None = None, after: AfterFit = NO_FIT
 ) -> Measured:
     """Stiffnesses, turn-slip force and eps_gamma at every load, from points with the angles as read; stiffnesses only on a flat
     track.
@@ -88,8 +72,6 @@ def measure(
     per_load = sorted([*measured, *_of_model_alone(after, measured)], key=lambda row: row.load)
     epsilons = {x.row.load: x.epsilon for x in of_loads if x.row is not None and x.epsilon is not None}
     row, law, notes, of_nominal = _at_nominal(evidence, per_load, epsilons)
-    lag = one_way_lag(points, config.tyre.unloaded_radius)
-    stated = judge(MeasuredFacts(row, evidence.zeros, evidence.drift, lag)) if judge else SpinStatement()
     left = config.rig.u("alpha_0_deg")
     on_disc = None if law is None else row
     troubles = chain(*(said for *_, said in slopes), *(found.troubles for found in of_loads), of_nominal)
@@ -101,17 +83,15 @@ def measure(
         r_e_loads={load: float(r.nominal_value) for load, r in evidence.radii.items()},
         misaligned=on_disc is not None and on_disc.slips_beyond(left),
         notes=notes,
-        warnings=(*stated.warnings, *parts.unpaired, *troubles, *of_setups),
+        warnings=(*parts.unpaired, *troubles, *of_setups),
         setup_scatter=evidence.scatter,
         sideslip_zeros=evidence.zeros,
         drift=evidence.drift,
-        lag=lag,
+        lag=one_way_lag(points, config.tyre.unloaded_radius),
         misaligned_setups=_misaligned_setups(evidence, on_disc) if on_disc else {},
         axis_off=on_disc is not None and on_disc.axis_off(left),
         camber_skew=evidence.skew,
         epsilon_gamma_model=after.epsilon_gamma,
-        made=stated.made,
-        reasons=stated.reasons,
         published=published(evidence, points, row) if row else None,
     )
 

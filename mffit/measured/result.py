@@ -273,23 +273,6 @@ class AfterFit:
 NO_FIT = AfterFit()
 
 
-class MeasuredFacts(NamedTuple):
-    """What the rules of trust need of direct measurements."""
-
-    nominal: LoadResult | None
-    sideslip_zeros: tuple[SideslipZeros, ...]
-    drift: Drift | None
-    lag: OneWayLag | None
-
-
-class SpinStatement(NamedTuple):
-    """What ``mffit spin`` states in addition to the measurements."""
-
-    reasons: tuple[str, ...] = ()  #: reasons against trust
-    warnings: tuple[str, ...] = ()
-    made: Made | None = None
-
-
 @dataclass(frozen=True, slots=True, repr=False)
 class Measured(Brief):
     """Results of the direct method, without a model."""

@@ -17,8 +17,7 @@ from mffit.config import Config
 from mffit.errors import InputError
 from mffit.made import Made, made
 from mffit.measured import Alignment, Measured, radius_readings
-from mffit.measured.direct import Judge
-from mffit.measured.result import NO_FIT, AfterFit, MeasuredFacts, SpinStatement
+from mffit.measured.result import NO_FIT, AfterFit
 from mffit.output import output_folder
 from mffit.parts import Parts
 from mffit.pipeline.inputs import input_hashes, inputs_of, project_of, read_base, read_points
@@ -57,14 +56,19 @@ def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None
 
 def spin_of(config: Config, reading: Reading, made_of: Made | None = None) -> Measured:
     """:func:`spin` of points that were read."""
-    points = reading.points
-
-    def judged(facts: MeasuredFacts) -> SpinStatement:
-        counts = not follows_path(config)
-        trust = judge(JudgedMeasurement(points=points, radius_counts=counts, **facts._asdict()))
-        return SpinStatement(trust.reasons, (*said(trust), *reading.warnings), made_of)
-
-    return measure(config, points, read_base(config), judge=judged)[1]
+    found = measure(config, reading.points, read_base(config))[1]
+    trust = judge(
+        JudgedMeasurement(
+            points=reading.points,
+            nominal=found.nominal,
+            radius_counts=not follows_path(config),
+            sideslip_zeros=found.sideslip_zeros,
+            drift=found.drift,
+            lag=found.lag,
+        )
+    )
+    warnings = (*said(trust), *reading.warnings, *found.warnings)
+    return replace(found, made=made_of, reasons=trust.reasons, warnings=warnings)
 
 
 def said(trust: Trust) -> tuple[str, ...]:
@@ -125,17 +129,13 @@ def _aligned(config: Config, points: Points, resolution_deg: float = 0.0) -> Ali
 
 
 def measure(
-    config: Config,
-    points: Points,
-    base: Tyre | None,
-    after: AfterFit = NO_FIT,
-    judge: Judge | None = None,
+    config: Config, points: Points, base: Tyre | None, after: AfterFit = NO_FIT
 ) -> tuple[Parts, Measured]:
     """The odd and even parts of the points, and the direct measurements from those that roll freely, if there are any."""
     rolling = _rolling(points)
     own = points if np.all(rolling) else points.select(rolling)
     parts = decomposition.split(own)
-    measured = direct.measure(config, own, parts, base, after, judge)
+    measured = direct.measure(config, own, parts, base, after)
     parts = replace(parts, alpha_odd=direct.odd_alpha(own, parts, config))
     return (parts if own is points else parts.among(points, rolling)), measured
 

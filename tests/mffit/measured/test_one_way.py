@@ -11,7 +11,6 @@ from mffit import config as configuration
 from mffit.fit.rig.rig_numbers import held_rig
 from mffit.measured import measure
 from mffit.measured.one_way import one_way_lag
-from mffit.measured.result import SpinStatement
 from mffit.parts import split
 from mffit.points import make_points
 from mffit.suspicion import JudgedMeasurement, judge
@@ -60,16 +59,11 @@ def test_an_unseen_lag_is_a_doubt_and_in_the_uncertainty_of_the_zero():
                 "sweep": [{"file": "none.csv"}],
             }
         )
-        doubts: list[str] = []
-
-        def judged(facts, points=points, doubts=doubts):
-            doubts += judge(JudgedMeasurement(points=points, **facts._asdict())).doubts
-            return SpinStatement()
-
-        measured = measure(config, points, split(points), judge=judged)
+        measured = measure(config, points, split(points))
+        doubts = judge(JudgedMeasurement(points=points, lag=measured.lag)).doubts
         zero = held_rig(config, measured)["alpha_0_deg"]
         found.append((doubts, zero, measured.lag))
     ((said,), wide, lag), (none, usual, _) = found
     assert "one way" in said
-    assert none == []
+    assert none == ()
     assert wide == pytest.approx(math.hypot(usual, math.degrees(lag.angle)))
