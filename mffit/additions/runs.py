@@ -88,8 +88,7 @@ def swept(points: Points) -> Points:
 
 def _beyond(values: np.ndarray, kind: levels.LevelKind) -> np.ndarray:
     """Mask (n,) of the values that differ from zero by more than the tolerance of their kind."""
-    out: np.ndarray = np.abs(values) > kind.tolerance
-    return out
+    return np.asarray(np.abs(values) > kind.tolerance)
 
 
 def largest_slip(points: Points) -> float:

@@ -30,8 +30,7 @@ class Conditions(NamedTuple):
     @property
     def small_camber(self) -> np.ndarray:
         """Whether each condition is within the camber up to which cars use their tyres."""
-        small: np.ndarray = np.abs(self.gamma) <= constants.SMALL_CAMBER.rad * (1.0 + 1e-9)
-        return small
+        return np.asarray(np.abs(self.gamma) <= constants.SMALL_CAMBER.rad * (1.0 + 1e-9))
 
     @property
     def weight(self) -> np.ndarray:

@@ -72,8 +72,7 @@ class DirectProspect:
         """Mask (n,) of the points from which the direct method determines eps_gamma at the nominal load."""
         near = np.abs(np.log(points.Fz / self._nominal)) < levels.LOAD.tolerance
         main = np.abs(points.p - self._pressure) < levels.PRESSURE.tolerance
-        deciding: np.ndarray = near & main & (points.mount > 0) & ~points.continuous
-        return deciding
+        return np.asarray(near & main & (points.mount > 0) & ~points.continuous)
 
 
 class Prospect:

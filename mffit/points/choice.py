@@ -137,7 +137,7 @@ def _transient(x: np.ndarray) -> int:
     blocks = min(constants.BLOCKS_OF_STRETCH, len(x))
     half = blocks // 2
     edges = np.linspace(0, len(x), blocks + 1).astype(int)
-    level, error = mean_and_error(x[edges[half] :])
+    level, error, _ = mean_and_error(x[edges[half] :])
     error *= np.sqrt(blocks / 2.0 + 1.0)  # of the difference between one block and the second half
     clear = beyond(FALSE_ALARM / half) if half else 0.0
     for block in range(half):
@@ -154,5 +154,4 @@ def _drift(x: np.ndarray) -> tuple[float, float]:
     """
     time = np.linspace(-0.5, 0.5, len(x))
     change = float(np.dot(time, x) / np.dot(time, time))
-    _, error = mean_and_error(x - change * time)
-    return change, float(np.sqrt(12.0)) * error
+    return change, float(np.sqrt(12.0)) * mean_and_error(x - change * time).error

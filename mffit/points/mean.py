@@ -18,7 +18,7 @@ def errors_of_means(records: Sequence[np.ndarray]) -> np.ndarray:
     of the estimates beyond chance (Smyth, Stat. Appl. Genet. Mol. Biol. 3, 2004, article 3); without such scatter it is used
     alone.
     """
-    found = [_mean_of(x) for x in records]
+    found = [mean_and_error(x) for x in records]
     errors = np.array([one.error for one in found])
     known = np.flatnonzero(np.isfinite(errors) & (errors > 0.0)).tolist()
     if len(known) < 2:
@@ -38,7 +38,15 @@ def errors_of_means(records: Sequence[np.ndarray]) -> np.ndarray:
     return errors
 
 
-def mean_and_error(x: np.ndarray) -> tuple[float, float]:
+class MeanOfRecord(NamedTuple):
+    """Mean of a series, and what its noise makes of it."""
+
+    mean: float
+    error: float  #: standard error of the mean
+    inefficiency: float  #: number of samples that count as one
+
+
+def mean_and_error(x: np.ndarray) -> MeanOfRecord:
     """Mean of a stationary series (n,) of equidistant samples and its standard error, autocorrelation included.
 
     NaN anywhere gives NaN. The error of a constant series is 0, of fewer than two samples NaN.
@@ -49,30 +57,19 @@ def mean_and_error(x: np.ndarray) -> tuple[float, float]:
     twice the record for the same accuracy. Estimating the mean from the same record costs ``g`` of its ``n`` samples, in the
     variance and in ``g`` itself.
     """
-    found = _mean_of(x)
-    return found.mean, found.error
-
-
-class _MeanOfRecord(NamedTuple):
-    mean: float
-    error: float
-    inefficiency: float  #: number of samples that count as one
-
-
-def _mean_of(x: np.ndarray) -> _MeanOfRecord:
     n, mean = len(x), float(np.mean(x))
     if n < 2 or not np.isfinite(mean):
-        return _MeanOfRecord(mean, math.nan, 1.0)
+        return MeanOfRecord(mean, math.nan, 1.0)
     centred = x - mean
     variance = float(np.mean(centred**2))
     if variance <= (1e-12 * max(abs(mean), 1e-300)) ** 2:
-        return _MeanOfRecord(mean, 0.0, 1.0)
+        return MeanOfRecord(mean, 0.0, 1.0)
     coefficients, innovation = autoregression(centred)
     g = innovation / (1.0 - float(np.sum(coefficients))) ** 2 / variance
     g = min(max(g, 1.0), n / 4.0)
     if len(coefficients):
         g *= 1.0 + 2.0 * g / n
-    return _MeanOfRecord(mean, float(np.sqrt(variance / (1.0 - g / n) * g / n)), g)
+    return MeanOfRecord(mean, float(np.sqrt(variance / (1.0 - g / n) * g / n)), g)
 
 
 def _inverse_trigamma(y: float) -> float:

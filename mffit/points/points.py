@@ -63,13 +63,11 @@ class Points(MeasuredRows):
 
     def channel(self, name: str) -> np.ndarray:
         """Readings (n,) of a channel of :data:`mffit.quantities.CHANNELS`, in its unit; NaN where it was not measured."""
-        readings: np.ndarray = getattr(self, name)
-        return readings
+        return np.asarray(getattr(self, name))
 
     def u(self, name: str) -> np.ndarray:
         """Standard uncertainty (n,) of a channel; NaN where none is stated."""
-        u: np.ndarray = getattr(self, f"u_{name}")
-        return u
+        return np.asarray(getattr(self, f"u_{name}"))
 
     def condition(self, column: str) -> np.ndarray:
         """A condition (n,) of :data:`mffit.quantities.CONDITIONS` in its unit, by its column; NaN where it was not measured."""

@@ -38,8 +38,7 @@ class Curve(ReadOnlyArrays):
 
     def varied(self, points: Points) -> np.ndarray:
         """What varies (k,): an angle [deg] or longitudinal slip [-]."""
-        varied: np.ndarray = shown_values(points, self.over)[self.index]
-        return varied
+        return np.asarray(shown_values(points, self.over)[self.index])
 
 
 def shown_values(points: Points, over: str) -> np.ndarray:
@@ -110,8 +109,7 @@ def _held_at_slip(
     for i in np.unique(points.sweep[slipping]):
         rows = points.sweep == i
         held[rows] = levels.level_values(angle[rows], kind)
-    degrees: np.ndarray = np.degrees(levels.level_values(held, kind)) if slipping.any() else held
-    return degrees
+    return np.asarray(np.degrees(levels.level_values(held, kind)) if slipping.any() else held)
 
 
 def _along(points: Points, name: str, over: str, rows: np.ndarray, keys: Sequence[np.ndarray]) -> list[Curve]:

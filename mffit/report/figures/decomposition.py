@@ -56,8 +56,7 @@ def _trace(view: BuildView, channel: ChannelRow, curve: Curve, name: str) -> Tra
 
     def part(of: str) -> np.ndarray:
         unknown = np.full(len(view.points), np.nan)
-        values: np.ndarray = getattr(view.build.parts, of.format(channel.name), unknown)[curve.index]
-        return values
+        return np.asarray(getattr(view.build.parts, of.format(channel.name), unknown)[curve.index])
 
     values = channel.measured[curve.index] if name == RAW else part("{}_odd" if name == ODD else "{}_even")
     half = part("u_{}_odd") if name == EVEN else None

@@ -74,5 +74,4 @@ def _clock(time: np.ndarray, broken: np.ndarray) -> np.ndarray:
     """Time (n,) from zero with the gap before every ``broken`` sample closed to a step."""
     steps = np.diff(time)
     steps[broken - 1] = np.median(steps)
-    closed: np.ndarray = np.r_[0.0, np.cumsum(steps)]
-    return closed
+    return np.asarray(np.r_[0.0, np.cumsum(steps)])
