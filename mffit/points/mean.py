@@ -39,7 +39,7 @@ def errors_of_means(records: Sequence[np.ndarray]) -> np.ndarray:
 
 
 class MeanOfRecord(NamedTuple):
-    """Mean of a series, and what its noise makes of it."""
+    """Mean of a series, its standard error and its statistical inefficiency."""
 
     mean: float
     error: float  #: standard error of the mean
