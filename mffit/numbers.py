@@ -44,6 +44,19 @@ class Numbers(ReadOnlyArrays, Brief):
         k, at = len(names), np.asarray(values, dtype=float)
         return cls(tuple(names), at, inverse(covariance), np.zeros(k), at, np.full(k, math.inf))
 
+    @classmethod
+    def beforehand(
+        cls,
+        names: Sequence[str],
+        values: np.ndarray,
+        expected: np.ndarray,
+        spread: np.ndarray,
+        held: Collection[str] = (),
+    ) -> Numbers:
+        """Numbers of which only the priors are known."""
+        k = len(names)
+        return cls(tuple(names), values, np.zeros((k, k)), np.zeros(k), expected, spread, frozenset(held))
+
     @cached_property
     def covariance(self) -> np.ndarray:
         """Covariance (k, k) of the estimate."""

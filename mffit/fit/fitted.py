@@ -9,7 +9,7 @@ from mffit.fit import constants
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.problem import FitProblem
 from mffit.fit.stages import is_asymmetry
-from mffit.fit.told import Priors, numbers_told, told_by_curves
+from mffit.fit.told import known_beforehand, numbers_told, told_by_curves
 from mffit.least_squares import FreeNumber, solve
 from mffit.linearised import LinearisedFit, Uncertain, linearised
 from mffit.numbers import Numbers
@@ -117,12 +117,12 @@ def left_by(
     return linearised(problem.points, fitted.simulation, problem.sigma, numbers, without=without, near=near)
 
 
-def priors_of(fitted: Fitted) -> Priors:
+def priors_of(fitted: Fitted) -> Numbers:
     """The fitted numbers, those held with an uncertainty, and on a disc PECP1 and PECP2."""
     held = fitted.taken_as_exact
     if fitted.problem.simulation.turn_slip:
         held = dict.fromkeys((name for name in SPIN if name not in fitted.hand.held), 0.0) | held
-    return Priors.of(fitted.problem, [with_prior(number) for number in fitted.numbers], held)
+    return known_beforehand(fitted.problem, [with_prior(number) for number in fitted.numbers], held)
 
 
 def with_errors_of(fitted: Fitted, left: LinearisedFit) -> Fitted:

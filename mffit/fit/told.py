@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -99,17 +100,9 @@ def told_by_run(
 
 def told_by_weights(problem: FitProblem, numbers: Sequence[FreeNumber], held: Mapping[str, float]) -> Numbers:
     """The numbers if all readings are independent and scatter by their weights; ``held`` ones keep their uncertainties."""
-    priors = Priors.of(problem, numbers, held)
+    priors = known_beforehand(problem, numbers, held)
     slope = problem.free(priors.names).linear(priors.values).slope
-    return Numbers(
-        priors.names,
-        priors.values,
-        slope.T @ slope,
-        np.zeros(len(priors.names)),
-        priors.expected,
-        priors.spread,
-        priors.held,
-    )
+    return replace(priors, information=slope.T @ slope)
 
 
 def _slopes(problem: FitProblem, points: Points, channel: str, names: Sequence[str]) -> np.ndarray:
@@ -146,32 +139,18 @@ class _Readings(NamedTuple):
         )
 
 
-class Priors(NamedTuple):
-    """Numbers (k,) at their fitted values, with priors."""
-
-    names: tuple[str, ...]
-    values: np.ndarray
-    expected: np.ndarray  #: prior means
-    spread: np.ndarray  #: prior standard deviations, inf without a prior, 0 for a number taken as exact
-    held: frozenset[str]  #: numbers that the fit did not move
-
-    @classmethod
-    def of(cls, problem: FitProblem, free: Sequence[FreeNumber], held: Mapping[str, float]) -> Priors:
-        """The ``free`` numbers, and those ``held`` with a standard uncertainty, at the values of ``problem``."""
-        known = {n.name: (n.expected, n.spread) for n in free}
-        held = {name: u for name, u in held.items() if name not in known}
-        names = (*known, *held)
-        values = np.array([problem.value(name) for name in names])
-        return cls(
-            names=names,
-            values=values,
-            expected=np.array([*(mean for mean, _ in known.values()), *values[len(known) :]]),
-            spread=np.array([*(u for _, u in known.values()), *held.values()]),
-            held=frozenset(held),
-        )
+def known_beforehand(problem: FitProblem, free: Sequence[FreeNumber], held: Mapping[str, float]) -> Numbers:
+    """The ``free`` numbers with their priors, and those ``held`` with a standard uncertainty, at the values of ``problem``."""
+    known = {n.name: (n.expected, n.spread) for n in free}
+    held = {name: u for name, u in held.items() if name not in known}
+    names = (*known, *held)
+    values = np.array([problem.value(name) for name in names])
+    expected = np.array([*(mean for mean, _ in known.values()), *values[len(known) :]])
+    spread = np.array([*(u for _, u in known.values()), *held.values()])
+    return Numbers.beforehand(names, values, expected, spread, held)
 
 
-def numbers_told(told: Sequence[Told], priors: Priors) -> Numbers:
+def numbers_told(told: Sequence[Told], priors: Numbers) -> Numbers:
     """The numbers with the information of all curves, so that their covariance is that of repeated campaigns.
 
     A fit gives every reading the weight of independent noise. Its estimate therefore moves, from campaign to campaign, by noise
@@ -204,9 +183,7 @@ def numbers_told(told: Sequence[Told], priors: Priors) -> Numbers:
         # The free numbers are at their best; the held ones would move as far as in the fit with its weights.
         pull = sum((one.pull for one in told), -score)[held]
         score[held] = of_held @ inverse(every)[np.ix_(held, held)] @ pull
-    return Numbers(
-        priors.names, priors.values, information, score, priors.expected, priors.spread, priors.held
-    )
+    return replace(priors, information=information, score=score)
 
 
 def _repeated(told: Sequence[Told], precision: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

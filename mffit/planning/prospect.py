@@ -17,7 +17,7 @@ from mffit.fit.fitted import left_by, priors_of
 from mffit.fit.priors import scatter
 from mffit.fit.ranges import tested_ranges
 from mffit.fit.rig.rig_numbers import rig_numbers
-from mffit.fit.told import Priors, Told, numbers_told, told_by_curves, told_by_run
+from mffit.fit.told import Told, numbers_told, told_by_curves, told_by_run
 from mffit.measured import Measured, unspun
 from mffit.numbers import Numbers
 from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, ROAD, Goal
@@ -129,7 +129,7 @@ class Prospect:
         unmoved = (own.held | self._unseen.keys()) - beyond - free.keys() | held.keys()
         expected = dict(zip(own.names, own.expected.tolist(), strict=True))
         values = np.array([self.simulation.number(name, self.points) for name in spread])
-        priors = Priors(
+        priors = Numbers.beforehand(
             names=tuple(spread),
             values=values,
             expected=np.array([expected.get(n, x) for n, x in zip(spread, values.tolist(), strict=True)]),

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mffit.fit.told import Priors, Told, numbers_told
+from mffit.fit.told import Told, numbers_told
 from mffit.numbers import Numbers, from_json, to_json
 
 NAMES = ("PKY1", "PDY1", "F0_N", "PECP1")
@@ -106,13 +106,13 @@ def test_numbers_are_as_uncertain_as_campaigns_differ(bend):
     found, stated = [], []
     for _ in range(400):
         fitted, told = campaign(random, bend=bend)
-        priors = Priors(("a", "b"), fitted, fitted, np.full(2, math.inf), frozenset())
+        priors = Numbers.beforehand(("a", "b"), fitted, fitted, np.full(2, math.inf), frozenset())
         found.append(fitted)
         stated.append(np.diag(numbers_told(told, priors).covariance))
     ratio = np.sqrt(np.median(stated, axis=0)) / np.std(found, axis=0)
     assert np.all((ratio > 0.85) & (ratio < 1.3)), ratio
     fitted, told = campaign(np.random.default_rng(9), bend=bend)
-    priors = Priors(("a", "b"), fitted, fitted, np.full(2, math.inf), frozenset())
+    priors = Numbers.beforehand(("a", "b"), fitted, fitted, np.full(2, math.inf), frozenset())
     plain = numbers_told([missing_nothing(one) for one in told], priors)
     if bend:  # noise and offsets alone state far too little
         assert numbers_told(told, priors).stderr["b"] > 1.5 * plain.stderr["b"]
@@ -126,7 +126,7 @@ def missing_nothing(one: Told) -> Told:
 def test_readings_that_tell_less_than_a_prior_leave_it():
     """Scatter of a score that exceeds its information by far: the number keeps its prior, and no more than that."""
     told = [Told(np.eye(1), 100.0 * np.eye(1), np.zeros(1), np.zeros(1))]
-    priors = Priors(("a",), np.zeros(1), np.zeros(1), np.array([2.0]), frozenset())
+    priors = Numbers.beforehand(("a",), np.zeros(1), np.zeros(1), np.array([2.0]), frozenset())
     assert numbers_told(told, priors).stderr["a"] == pytest.approx(2.0)
 
 
@@ -141,7 +141,7 @@ def test_the_score_of_a_held_number_says_what_the_readings_would_make_of_it(scat
     )  # the second is held at 0
     whole = slopes.T @ slopes
     told = [Told(whole, scatter * whole, np.zeros(2), slopes.T @ (read - slopes @ at))]
-    priors = Priors(("a", "b"), at, at, np.array([math.inf, 0.1]), frozenset(["b"]))
+    priors = Numbers.beforehand(("a", "b"), at, at, np.array([math.inf, 0.1]), frozenset(["b"]))
     numbers = numbers_told(told, priors)
     freed = replace(numbers, held=frozenset(), spread=np.full(2, math.inf))
     best = freed.values + np.linalg.solve(freed.information, freed.score)
@@ -157,7 +157,7 @@ def test_an_error_of_a_held_number_moves_the_others_as_the_weights_of_the_fit_do
         own = slopes.sum(axis=0)  # of an offset of the run
         missed = slopes.T @ random.standard_normal(12)
         told.append(Told(slopes.T @ slopes, slopes.T @ slopes + 9.0 * np.outer(own, own), missed, missed))
-    priors = Priors(
+    priors = Numbers.beforehand(
         ("a", "b", "held"), np.zeros(3), np.zeros(3), np.array([math.inf, math.inf, 0.1]), frozenset(["held"])
     )
     slopes = np.concatenate(sweeps)
