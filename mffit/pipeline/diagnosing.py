@@ -13,7 +13,7 @@ import tir
 from mffit import as_json
 from mffit import config as configuration
 from mffit.config import Config
-from mffit.diagnosis import Asked, Diagnosis, corrected_points, wording
+from mffit.diagnosis import Diagnosis, corrected_points, wording
 from mffit.diagnosis import diagnose as find_effects
 from mffit.diagnosis.notes import DiagnosisNote, DirectMethodRedone, ModelFittedFirst, ModelOfLastBuild
 from mffit.diagnosis.result import WITH_TERMS
@@ -95,13 +95,10 @@ def _explained(
     if other is not None:
         progress(other.sentence)
     same = fitted_to(chosen.tyre, config)
-    known = known_of_model(chosen.tyre, config, chosen.file, same=same, fresh=chosen.fresh)
-    asked = Asked(
+    asked = replace(
+        known_of_model(chosen.tyre, config, chosen.file, same=same, fresh=chosen.fresh),
         rig=rig_of_build(chosen.tyre) if same else None,
         effects=effects,
-        coefficients=known.coefficients,
-        seen=known.seen,
-        left=known.left,
         repair_all=repair_all,
         as_read=reading.as_read,
         taken_off=reading.taken_off,

@@ -6,8 +6,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 from urllib.parse import quote, unquote
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 import tir
 from mffit.config import Config
 from mffit.diagnosis.inexact import Inexactness, correlated, refitted
+from mffit.diagnosis.search import Asked
 from mffit.fit import FitResult, plain_use
 from mffit.fit.influences.nuisances import of_run
 from mffit.made import Made
@@ -130,17 +130,8 @@ def fitted_to(tyre: Tyre, config: Config) -> bool:
     return bool(of_file) and of_file == _of_inputs(input_hashes(config))
 
 
-class KnownOfModel(NamedTuple):
-    """What the build of a model states about it."""
-
-    coefficients: Inexactness | None = None  #: their uncertainty; None if unknown
-    seen: bool = False  #: whether the model was fitted to the present sweeps
-    left: Mapping[str, float] = MappingProxyType({})
-    """By channel, the rms [N], [Nm] by which it misses the points of its build beyond the noise; empty if unknown."""
-
-
-def known_of_model(tyre: Tyre, config: Config, path: Path | None, *, same: bool, fresh: bool) -> KnownOfModel:
-    """What is known of a model from its build.
+def known_of_model(tyre: Tyre, config: Config, path: Path | None, *, same: bool, fresh: bool) -> Asked:
+    """The question of a diagnosis with what is known of a model from its build.
 
     Coefficients fitted to the present sweeps (``same``, see :func:`fitted_to`, or ``fresh``: just now) are fitted again; those
     of a build on other sweeps have that build's posterior. ``model.u_coefficients`` takes precedence over a posterior. A file
@@ -150,8 +141,8 @@ def known_of_model(tyre: Tyre, config: Config, path: Path | None, *, same: bool,
     posterior = _posterior(result)
     if same and (fresh or posterior is not None):
         known = {name: entry.u for name, entry in config.coefficients.items() if entry.u is not None}
-        return KnownOfModel(refitted(tyre, curved=config.rig.on_disc, stated=known), seen=True)
-    return KnownOfModel(None if config.model.u_coefficients else posterior, left=_left(result))
+        return Asked(coefficients=refitted(tyre, curved=config.rig.on_disc, stated=known), seen=True)
+    return Asked(coefficients=None if config.model.u_coefficients else posterior, left=_left(result))
 
 
 def posterior_of(tyre: Tyre, path: Path) -> Inexactness | None:
