@@ -101,27 +101,40 @@ class LeastSquaresProblem:
     linear: Callable[[np.ndarray], Linear]  #: residuals with derivatives
 
 
-def of_model(
-    model: Callable[[Mapping[str, Any]], Any], names: Sequence[str], measured: np.ndarray, u: Any
-) -> LeastSquaresProblem:
-    """The least-squares problem of a model (m,) of named numbers, plain or traced, for measured values (m,); without limits.
+def of_numbers(names: Sequence[str], at: Callable[[Mapping[str, Any]], Linear]) -> LeastSquaresProblem:
+    """The least-squares problem of named numbers; ``at`` takes them plain or, for the derivatives, traced."""
 
-    ``u`` is the standard uncertainty of the measured values, scalar or (m,).
-    """
-    none, k = np.zeros(0), len(names)
+    def named(x: np.ndarray) -> dict[str, float]:
+        return dict(zip(names, x.tolist(), strict=True))
 
     def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        found = model(dict(zip(names, x.tolist(), strict=True)))
-        return (np.broadcast_to(found, len(measured)) - measured) / u, none
+        here = at(named(x))
+        return here.data, here.limits
 
-    def linear(x: np.ndarray) -> Linear:
-        numbers = traced(dict(zip(names, x.tolist(), strict=True)))
+    return LeastSquaresProblem(residual, lambda x: at(traced(named(x))))
+
+
+def of_model(
+    model: Callable[[Mapping[str, Any]], Any],
+    names: Sequence[str],
+    measured: np.ndarray,
+    u: Any,
+    limits: Callable[[Mapping[str, Any]], tuple[np.ndarray, np.ndarray]] | None = None,
+) -> LeastSquaresProblem:
+    """The least-squares problem of a model (m,) of named numbers, plain or traced, for measured values (m,).
+
+    ``u`` is the standard uncertainty of the measured values, scalar or (m,). ``limits`` returns residuals (l,) of limits, and their
+    derivatives (l, k) if the numbers are traced.
+    """
+
+    def at(numbers: Mapping[str, Any]) -> Linear:
         found = model(numbers)
-        slope = np.broadcast_to(gradient(found, list(numbers.values())), (len(measured), k))
+        slope = np.broadcast_to(gradient(found, list(numbers.values())), (len(measured), len(names)))
         data = (np.broadcast_to(plain(found), len(measured)) - measured) / u
-        return Linear(data, (slope.T / u).T, none, np.zeros((0, k)))
+        held = (np.zeros(0), np.zeros((0, len(names)))) if limits is None else limits(numbers)
+        return Linear(data, (slope.T / u).T, *held)
 
-    return LeastSquaresProblem(residual, linear)
+    return of_numbers(names, at)
 
 
 @dataclass(frozen=True, eq=False)

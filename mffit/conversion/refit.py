@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -14,8 +13,8 @@ from mffit.conversion import constants
 from mffit.conversion.grid import Conditions, Reach, cambers, loads
 from mffit.fit.constants import STAGE_TOLERANCE
 from mffit.fit.written.normal import CAMBER_FORCE, CAMBER_MOMENT
-from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, of_model, solve
-from tir.derivatives import Traced, gradient, plain, traced
+from mffit.least_squares import FreeNumber, of_model, solve
+from tir.derivatives import Traced, gradient, plain
 from tir.equations import aligning, lateral, longitudinal, normalise
 from tir.outputs import outputs_of
 
@@ -102,12 +101,12 @@ class Fit(NamedTuple):
         self,
         values: Mapping[str, Any],
         bounds: Callable[[str], tuple[float, float]] = lambda name: UNBOUNDED,
-        limits: Limits | None = None,
+        limits: Callable[[Mapping[str, Any]], tuple[np.ndarray, np.ndarray]] | None = None,
     ) -> Mapping[str, float]:
-        """The coefficients that come nearest, from those in ``values``, which has all others."""
-        problem = of_model(lambda numbers: self.force({**values, **numbers}), self.names, self.goal, self.u)
-        if limits is not None:
-            problem = limits.added(problem, self.names, values)
+        """The coefficients that come nearest, from those in ``values``, which has all others; ``limits`` as in `of_model`."""
+        problem = of_model(
+            lambda numbers: self.force({**values, **numbers}), self.names, self.goal, self.u, limits
+        )
         numbers = [FreeNumber(name, float(values[name]), *bounds(name)) for name in self.names]
         # Near enough: the misfit is within two per cent of the least. Below, terms of which the forces need one (QSX4 and QSX8 of
         # PAC2002) run away together for hundreds of steps.
@@ -131,8 +130,9 @@ def refit(
         names = (*by_camber, *(name for factor in limited for name in factor.names))
         if names:
             fit = Fit(names, partial(force_62, channel, at), goal[channel], at.u(goal[channel]))
-            limits = Limits(limited, reach) if limited else None
-            found.update(fit.solved({**values, **found}, limits=limits))
+            others = {**values, **found}
+            limits = partial(_held_to_one, limited, reach, others) if limited else None
+            found.update(fit.solved(others, limits=limits))
     return found
 
 
@@ -141,28 +141,11 @@ def force_62(channel: str, at: Conditions, values: Mapping[str, Any]) -> Any:
     return outputs_of((channel,), SimpleNamespace(**values), at._asdict())[0]
 
 
-class Limits(NamedTuple):
-    """Curvature factors that a fit holds to 1."""
-
-    factors: Sequence[CurvatureFactor]
-    reach: Reach
-
-    def added(
-        self, problem: LeastSquaresProblem, names: Sequence[str], values: Mapping[str, Any]
-    ) -> LeastSquaresProblem:
-        """The problem with a residual wherever a curvature factor exceeds 1."""
-        weight, margin = float(constants.WEIGHT_OF_CURVATURE_LIMIT), float(constants.CURVATURE_MARGIN)
-
-        def limits(numbers: Mapping[str, Any], by: Sequence[Any] = ()) -> tuple[np.ndarray, np.ndarray]:
-            over, slope = excess(SimpleNamespace(**{**values, **numbers}), self.factors, self.reach, by)
-            return weight * (over + margin), weight * slope
-
-        def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            return problem.residual(x)[0], limits(dict(zip(names, x.tolist(), strict=True)))[0]
-
-        def linear(x: np.ndarray) -> Linear:
-            numbers = traced(dict(zip(names, x.tolist(), strict=True)))
-            over, slope = limits(numbers, list(numbers.values()))
-            return replace(problem.linear(x), limits=over, limits_slope=slope)
-
-        return LeastSquaresProblem(residual, linear)
+def _held_to_one(
+    factors: Sequence[CurvatureFactor], reach: Reach, values: Mapping[str, Any], numbers: Mapping[str, Any]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Residuals, positive where a curvature factor exceeds 1, and their derivatives by the numbers that are traced."""
+    by = [x for x in numbers.values() if isinstance(x, Traced)]
+    over, slope = excess(SimpleNamespace(**{**values, **numbers}), factors, reach, by)
+    weight = float(constants.WEIGHT_OF_CURVATURE_LIMIT)
+    return weight * (over + float(constants.CURVATURE_MARGIN)), weight * slope

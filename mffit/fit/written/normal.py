@@ -12,9 +12,9 @@ from mffit.fit.constraints import limits
 from mffit.fit.ranges import envelope
 from mffit.fit.stages import ODD_TERMS, STAGES
 from mffit.fit.written.road import Road, camber_lines, force, forces, road_grid, weights
-from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
+from mffit.least_squares import FreeNumber, Linear, of_numbers, solve
 from mffit.rig import Readings
-from tir.derivatives import gradient, plain, traced
+from tir.derivatives import gradient, plain
 from tir.parameters import BY_NAME
 
 MISFIT_UNIT = {"Fy": constants.MISFIT_UNIT_FY, "Mz": constants.MISFIT_UNIT_MZ}
@@ -60,7 +60,7 @@ def derive(
     for channel, names in free.items():
         imitation = _Imitation(channel, found, values, goals, road, weights(road, tested, weight), written)
         numbers = _numbers({name: float(values[name]) for name in names}, hand)
-        found |= solve(imitation.of(names), numbers, tolerance=constants.REFIT_TOLERANCE).values
+        found |= solve(of_numbers(names, imitation.at), numbers, tolerance=constants.REFIT_TOLERANCE).values
     return {name: found[name] for names in free.values() for name in names if found[name] != values[name]}
 
 
@@ -83,19 +83,7 @@ class _Imitation(NamedTuple):
     weight: np.ndarray  #: (n,) of the conditions
     written: Mapping[str, float]  #: ranges over which the physical limits hold
 
-    def of(self, names: Sequence[str]) -> LeastSquaresProblem:
-        """The least-squares problem with the named values free."""
-
-        def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            here = self._at(dict(zip(names, x.tolist(), strict=True)))
-            return here.data, here.limits
-
-        def linear(x: np.ndarray) -> Linear:
-            return self._at(traced(dict(zip(names, x.tolist(), strict=True))))
-
-        return LeastSquaresProblem(residual, linear)
-
-    def _at(self, free: Mapping[str, Any]) -> Linear:
+    def at(self, free: Mapping[str, Any]) -> Linear:
         """Residuals and limits, with derivatives by the free values if they are traced."""
         values, by = {**self.fixed, **free}, [x for x in free.values() if not isinstance(x, float)]
         unit = MISFIT_UNIT[self.channel] * float(self.fixed["FNOMIN"])
