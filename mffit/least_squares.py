@@ -123,8 +123,8 @@ def of_model(
 ) -> LeastSquaresProblem:
     """The least-squares problem of a model (m,) of named numbers, plain or traced, for measured values (m,).
 
-    ``u`` is the standard uncertainty of the measured values, scalar or (m,). ``limits`` returns residuals (l,) of limits, and their
-    derivatives (l, k) if the numbers are traced.
+    ``u`` is the standard uncertainty of the measured values, scalar or (m,). ``limits`` returns residuals (l,) of limits and
+    their derivatives (l, k) if the numbers are traced.
     """
 
     def at(numbers: Mapping[str, Any]) -> Linear:

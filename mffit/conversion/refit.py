@@ -1,7 +1,5 @@
 """Least squares of the new file's forces to the old ones, with curvature factors held to 1, as MF 5.2 holds them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from types import SimpleNamespace
