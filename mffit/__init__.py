@@ -51,6 +51,7 @@ for _other in ("mffit-tir", "tir"):
         )
 
 if TYPE_CHECKING:
+    from mffit.conversion.convert import convert
     from mffit.export import write_c, write_fmu, write_matlab, write_table
     from mffit.pipeline import align, build, compare, diagnose, plan, predict, show, spin, watch, write_tydex
 
@@ -73,14 +74,6 @@ __all__ = [
     "write_table",
     "write_tydex",
 ]
-ELSEWHERE = {
-    "write_c": "mffit.export",
-    "write_fmu": "mffit.export",
-    "write_matlab": "mffit.export",
-    "write_table": "mffit.export",
-    "convert": "mffit.conversion",
-}
-"""Public names that are not the pipeline's."""
 
 
 def __getattr__(name: str) -> Any:
@@ -92,11 +85,9 @@ def __getattr__(name: str) -> Any:
             return version("mffit")
         except PackageNotFoundError:  # a source tree that nobody installed
             return "unknown"
-    if name in __all__:
-        from importlib import import_module
+    from mffit.on_demand import on_demand
 
-        return getattr(import_module(ELSEWHERE.get(name, "mffit.pipeline")), name)
-    raise AttributeError(f"module 'mffit' has no attribute {name!r}")
+    return on_demand(__name__)(name)
 
 
 def __dir__() -> list[str]:
