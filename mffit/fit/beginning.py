@@ -1,6 +1,7 @@
 """What a fit begins with: known values, plan, starting values and problem; and a first fit, for plans while a test runs."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -49,6 +50,7 @@ def begin(config: Config, points: Points, measured: Measured, base: Tyre | None)
     settled = {*hand.held, *(name for name, origin in known.origin.items() if origin == "measured")}
     radii = vertical_coefficients(known.values, points, settled)
     known = known.having({**{name: q.value for name, q in radii.found.items()}, **radii.switched}, "fitted")
+    known = replace(known, u={**known.u, **{name: q.u for name, q in radii.found.items()}})
     known = known.having({n: known.values[n] for n in radii.found if n in radii.regularised}, "regularised")
     rolling = points.select(points.free_rolling) if np.any(points.free_rolling) else points
     turning = None if "PECP1" in hand.held else turning_zeros(known.values, rolling, measured)

@@ -54,9 +54,8 @@ def coefficient_records(
     ``fitted_after`` has the coefficients that were determined after the main fit.
     """
     stderr = {name: u for name, u in known.u.items() if u and known.origin[name] == "measured"}
-    stderr |= {name: fitted.stderr[name] for name in fitted.values} | {
-        n: q.u for n, q in fitted_after.items()
-    }
+    stderr |= {name: q.u for name, q in fitted_after.items()}
+    stderr |= {name: fitted.stderr[name] for name in fitted.values}
     out, hand = {}, known.hand
     for row in TABLE:
         if row.kind != "number":

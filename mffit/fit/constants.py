@@ -27,6 +27,18 @@ SAME_NOMINAL_CONDITION = Real(
 )
 
 # Radii
+FREE_RADIUS_SPREAD = Real(
+    0.004,
+    "-",
+    "Standard deviation of a tyre's free radius over its declared one; published files have 0.9935 to 1.002.",
+)
+ROLLING_SLOPE_SPREAD = Real(
+    0.2,
+    "-",
+    "Standard deviation of DREFF and of FREFF: published files have 0.24 to 0.36 and 0.05 to 0.1, and a rolling radius that "
+    "falls by a third of the deflection 0 and 1/3.",
+)
+ROLLING_BEND_SPREAD = Real(4.0, "-", "Standard deviation of BREFF; published files have 7 to 9.")
 USUAL_MISFIT_OF_RADIUS = Real(
     0.0003,
     "m",

@@ -7,8 +7,6 @@ from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
-
 from mffit.config import Config
 from mffit.config.by_hand import KEYS_OF_TYRE
 from mffit.config.models import given_values
@@ -17,14 +15,11 @@ from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.priors import CONVERTED, Prior
 from mffit.fit.ranges import covered_ranges
 from mffit.fit.stages import ODD_TERMS
-from mffit.fit.upright import nearest
-from mffit.fit.wheel.rolling import RADIUS_COEFFICIENTS, effective_radius
 from mffit.measured import Measured
 from mffit.points import Points
-from mffit.rig import reference_speed
 from tir import Tyre
 from tir.equations import normalise, stiffness
-from tir.parameters import BY_NAME, TABLE
+from tir.parameters import TABLE
 
 DECIDED = ("TYRESIDE", "USE_MODE", "FITTYP")
 """Keys whose values the build sets itself."""
@@ -41,7 +36,7 @@ class Known:
     origin: Mapping[str, str]
     hand: Hand = NO_HAND
     u: Mapping[str, float | None] = field(default_factory=dict)
-    """Standard uncertainties of measured values, where known."""
+    """Standard uncertainties of values known before the fit, where they are stated."""
 
     def having(self, found: Mapping[str, Any], origin: str = "") -> Known:
         """The record with some values and their ``origin`` replaced; held values stay, and "" keeps the old origin."""
@@ -76,18 +71,10 @@ def known_before_fit(
     given = given_values(config.tyre)
     assumed = {name: x for name, x in given.items() if not _is_stated(config.tyre, name)}
     known = known.having(given, "given").having(assumed, "default")
-    if base is None:  # before the radii, because the estimated vertical terms affect the rolling radius
+    if base is None:
         known = known.having(estimates(known.values), "estimate")
     known = known.having({name: prior.expected for name, prior in fleet.items()}, "fleet")
     known = known.having(covered_ranges(points), "range")
-    r_e = dict(measured.r_e_loads)
-    if r_e:
-        loads, speed = np.array(list(r_e)), reference_speed(points)
-        radii = np.array(list(r_e.values()))
-        found = nearest(
-            known.values, RADIUS_COEFFICIENTS, lambda v: effective_radius(v, loads, speed), radii, hand.held
-        )
-        known = known.having(found, "measured")
     if measured.carried is not None:
         known = known.having({"PECP1": measured.pecp1}, "measured")
         known = known.having({"PECP2": measured.pecp2}, "measured" if measured.pecp2 else "default")
@@ -124,13 +111,12 @@ def known_after_fit(
 ) -> Known:
     """The values after the fit, with the estimates that follow from the fitted ones.
 
-    A fitted coefficient that belongs to no stage keeps its origin. ``regularised`` coefficients depend on their priors as much
+    ``regularised`` coefficients depend on their priors as much
     as on the points. ``held`` has the coefficients that the fit took as exact, some at starting values read off the points.
     """
     known = known.having({name: x for name, x in held.items() if x != known.values[name]}, "estimate")
     for name, value in fitted.items():
-        origin = "regularised" if name in regularised else "fitted" if BY_NAME[name].stage else ""
-        known = known.having({name: value}, origin)
+        known = known.having({name: value}, "regularised" if name in regularised else "fitted")
     if base is None:  # again, because some estimates scale with the fitted friction and stiffness
         found = estimates(known.values)
         known = known.having(

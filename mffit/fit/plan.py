@@ -19,6 +19,7 @@ from mffit.fit.problem import FitProblem
 from mffit.fit.rig.rig_numbers import held_rig, rig_numbers, unseen_zeros
 from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.stages import BY_STAGE, ODD_TERMS, is_asymmetry
+from mffit.fit.wheel.vertical import OF_ROLLING_RADIUS
 from mffit.least_squares import EXACT, FreeNumber
 from mffit.measured import Measured
 from mffit.points import Points
@@ -148,7 +149,10 @@ def fit_plan(
     scatter |= {name: prior.spread for name, prior in fleet.items()}
     absent = ODD_TERMS if config.tyre.side == "symmetric" else frozenset()
     held = {name: scatter[name] for row in cover for name in row.held if name not in absent}
-    extra = ["Q_RE0"] if rig and config.rig.on_disc and config.rolling_radius else []
+    extra: list[str] = []
+    if config.rolling_radius:
+        extra += OF_ROLLING_RADIUS
+        scatter = {**OF_ROLLING_RADIUS, **{n: u for n in extra if (u := known.u.get(n))}, **scatter}
     expected = {**start, **{name: prior.expected for name, prior in fleet.items()}}
     if measured.carried is not None and measured.carried.is_free:
         extra.append("PECP1")

@@ -207,11 +207,13 @@ class FitProblem(ReadOnlyArrays):
         coefficients = {name: x for name, x in numbers.items() if name in self.simulation.values}
         load = np.array([row.load for row in self.radii])
         measured, u = (np.array([getattr(row, name) for row in self.radii]) for name in ("value", "u"))
-        declared = self.simulation.declared(self.points)
-        R = numbers.get("path_radius_m", self.value("path_radius_m"))
         follows = np.array([1.0 if row.follows_path else 0.0 for row in self.radii])
+        longer: Any = 0.0
+        if np.any(follows):
+            R = numbers.get("path_radius_m", self.value("path_radius_m"))
+            longer = follows * (R / self.simulation.declared(self.points) - 1.0)
         Re = effective_radius({**self.simulation.values, **coefficients}, load, self.speed)
-        out = (Re - measured * (1.0 + follows * (R / declared - 1.0))) / u
+        out = (Re - measured * (1.0 + longer)) / u
         slope = np.broadcast_to(gradient(out, list(numbers.values())), (len(load), len(names)))
         return np.broadcast_to(plain(out), len(load)), slope
 
@@ -260,6 +262,6 @@ def fit_problem(
             for name in channels
         },
         envelope=envelope(covered_ranges(points)),
-        radii=radius_readings(config) if disc else (),
+        radii=radius_readings(config),
         speed=reference_speed(points),
     )

@@ -37,8 +37,6 @@ SPREADS = {
 have QSY3 of 0.0004 and more, QSY7 of 0.85 to 1 and QSY8 of -0.4 to 0."""
 BOUNDS = {"QSY7": (0.0, 3.0), "QSY8": (-2.0, 1.0)}
 MY_ZERO, FX_ZERO = "My0_Nm", "Fx0_N"
-RADIUS_COEFFICIENTS = ("Q_RE0", "DREFF")
-"""Coefficients that measured effective radii determine; the second one needs several loads."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,7 +44,15 @@ BOUNDS = {
     "Q_FCY": (0.0, 1.0),
     "Q_CAM3": (-8.0, 8.0),
 }
-SPREADS = {
+OF_ROLLING_RADIUS = {
+    "Q_RE0": float(constants.FREE_RADIUS_SPREAD),
+    "DREFF": float(constants.ROLLING_SLOPE_SPREAD),
+    "FREFF": float(constants.ROLLING_SLOPE_SPREAD),
+    "BREFF": float(constants.ROLLING_BEND_SPREAD),
+}
+"""Coefficients of the rolling radius and their standard deviations around known values: a few radii under load do not separate
+the free radius from the slopes over load."""
+SPREADS = OF_ROLLING_RADIUS | {
     row.name: row.tyres_spread for row in TABLE if row.section == "VERTICAL" and row.tyres_spread is not None
 }
 """Standard deviation among tyres of coefficients that few test plans determine: published files have Q_V1 of 0.0005 to 0.0008,
@@ -59,15 +67,13 @@ CONTOUR = {"Q_CAM1": 1.0}
 """Switches on the deflection of a flat tread by camber: only the ratio of Q_CAM1 to Q_CAM2 acts, so its size is arbitrary."""
 ROUNDING = 1e-9
 """Lower bound of the misfit of a radius, over the usual misfit."""
-OF_WHEEL_SPEED = ("DREFF", "FREFF", "BREFF")
-"""Coefficients of the rolling radius."""
 SHOWN = {
-    "RL": ("VERTICAL_STIFFNESS", "Q_RE0", "Q_FZ2", "PFZ1", *SPREADS, GROWTH),
-    "omega": ("Q_RE0", "Q_V1", *OF_WHEEL_SPEED, GROWTH),
+    "RL": ("VERTICAL_STIFFNESS", "Q_RE0", "Q_FZ2", "PFZ1", *OVER_SPEED, *EVEN, "Q_CAM3", GROWTH),
+    "omega": (*OF_ROLLING_RADIUS, "Q_V1", GROWTH),
 }
 """By channel, the numbers that it determines; numbers found from RL are kept for omega."""
 NEEDED = {
-    **{"Q_FZ2": ("loads", 3), "FREFF": ("loads", 3), "BREFF": ("loads", 4)},
+    "Q_FZ2": ("loads", 3),
     **dict.fromkeys(("PFZ1", GROWTH), ("pressures", 2)),
     **dict.fromkeys(OVER_SPEED, ("speeds", 2)),
     **{"Q_FCX": ("kappa", 1), "Q_FCY": ("sideslips", 3), "Q_CAM3": ("camber", 1)},
@@ -176,8 +182,8 @@ def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Colle
     The loaded radius is fitted first, to every reading under Fx, Fy and camber, because DREFF, BREFF and FREFF act only relative
     to the stiffness. Then the rolling radius follows, so that an offset of one channel does not distort the other. Coefficients
     that are ``held`` or that need more levels of a setting keep their values. The uncertainties include unknown effects of speed
-    (if a single speed was run) and the errors of the first fit. Errors within a part of a sweep are correlated, so only different
-    parts are treated as independent.
+    (if a single speed was run) and the errors of the first fit; those of the rolling radius hold for the vertical stiffness of
+    the file. Errors within a part of a sweep are correlated, so only different parts are treated as independent.
     """
     loaded, rolling = _loaded(points), _rolling(points)
     turning = None if rolling is None else rolling.select(np.isfinite(rolling.effective))
@@ -349,11 +355,10 @@ def _of_units(end: Solution, parts: Sequence[np.ndarray]) -> np.ndarray:
     even with few parts.
     """
     free = np.array([name not in end.at_bound for name in end.names])
-    n, freedom = len(parts), len(parts) - int(np.sum(free))
-    wider = float(stdtrit(freedom, 0.975)) / COVERAGE_FACTOR_95
+    n, slopes, prior = len(parts), end.jacobian[:, free], end.prior[free]
+    wider = float(stdtrit(max(n - _determined(end), 1.0), 0.975)) / COVERAGE_FACTOR_95
     if len(end.data) == n:
-        return end.covariance * wider**2
-    slopes, prior = end.jacobian[:, free], end.prior[free]
+        return inverse(end.jacobian.T @ end.jacobian / wider**2 + np.diag(end.prior))
     information = slopes.T @ slopes + np.diag(prior)
     gradient = slopes.T @ end.data + prior * (end.x - end.objective.expected)[free]
     moves = np.array([moved_without(slopes[k], end.data[k], information, gradient) for k in parts])
@@ -361,6 +366,12 @@ def _of_units(end: Solution, parts: Sequence[np.ndarray]) -> np.ndarray:
     covariance = np.diag(np.diag(end.covariance))
     covariance[np.ix_(free, free)] = wider**2 * (n - 1) / n * moves.T @ moves + of_priors @ of_priors.T
     return covariance
+
+
+def _determined(end: Solution) -> float:
+    """Number of free numbers that the readings determine; one that mostly its prior holds counts little."""
+    free = np.array([name not in end.at_bound for name in end.names])
+    return float(np.sum((1.0 - end.prior * np.diag(end.covariance))[free]))
 
 
 def _alike(end: Solution, parts: Sequence[np.ndarray]) -> float:
@@ -371,7 +382,7 @@ def _alike(end: Solution, parts: Sequence[np.ndarray]) -> float:
     squares = float(end.data @ end.data)
     sums = sum(float(np.sum(end.data[rows])) ** 2 for rows in parts)
     together = max(sums / squares, 1.0) if squares else 1.0
-    freedom = max(len(end.data) / together - len(end.names), 1.0)
+    freedom = max(len(end.data) / together - _determined(end), 1.0)
     return max(math.sqrt(squares / freedom), ROUNDING)
 
 
