@@ -102,7 +102,7 @@ DIRECT = {
     "C_gamma": QuantityName("measured camber stiffness", "C_γ", "N/rad", SLOPE_ON_PATH),
     "C_alpha": QuantityName("measured cornering stiffness", "C_α", "N/rad", SLOPE_ON_PATH),
     "C_alpha_straight": QuantityName("cornering stiffness", "C_α0", "N/rad", "slope at zero on a straight path"),
-    "r_e": QuantityName("effective radius", "r_e", "m", "of the freely rolling wheel (18)", "Q_RE0"),
+    "r_e": QuantityName("effective radius", "r_e", "m", "of the freely rolling wheel (18)", "Q_RE0, BREFF, DREFF and FREFF"),
     "R": QuantityName("path radius", "R", "m", "of the usual path (19)"),
     "alpha_M": QuantityName("misalignment plus ply-steer", "α_M", "rad", "from zeros both ways"),
     "misalignment": QuantityName("sideslip misalignment", "α_0", "rad", "part of alpha_M, by usual sizes"),

@@ -101,7 +101,7 @@ def test_errors_of_the_loaded_radius_are_carried_into_the_rolling_radius():
 def test_what_few_loads_and_pressures_do_not_show_stays():
     two = vertical_coefficients(VALUES, rolling(loads=(2000.0, 6000.0), pressures=(200e3,)))
     assert set(two.found) == {"VERTICAL_STIFFNESS", "Q_RE0", "DREFF", "FREFF", "BREFF"}
-    assert two.regularised >= {"FREFF", "BREFF"}
+    assert "BREFF" in two.regularised
     assert two.growth == 0.0
     assert not vertical_coefficients(VALUES, rolling(loads=(4000.0,))).found
     assert "Q_RE0" not in vertical_coefficients(VALUES, rolling(), held=("Q_RE0",)).found
