@@ -36,6 +36,33 @@ def _array(name: str, x: Any) -> np.ndarray:
     raise _refused(name, x, way_for(x) or "give a number or an array of numbers, such as float(x)")
 
 
+def of_library(name: str, x: Any, xp: Any) -> Any:
+    """An input for the array library ``xp``: its own arrays, and what it traces, as they are; else checked, in double precision.
+
+    Raises TirError as :func:`arrays_of`, and for complex numbers, which no library differentiates as a call of the tyre does.
+    """
+    if _is_foreign(x) and xp is not np:
+        return x if hasattr(x, "dtype") else xp.asarray(x, dtype=float)
+    array = _array(name, x)
+    if array.dtype.kind == "c":
+        raise _refused(name, x, "for complex numbers call the tyre")
+    return x if records(x) else xp.asarray(array, dtype=float)
+
+
+def _is_foreign(x: Any) -> bool:
+    """Whether it is an array of another library than numpy, or has one in a list."""
+    if isinstance(x, list | tuple):
+        return any(map(_is_foreign, x))
+    return hasattr(x, "dtype") and not isinstance(x, np.ndarray | np.generic)
+
+
+def switch_of(name: str, x: Any) -> bool:
+    """A switch of a call; raises TirError for what is neither True nor False."""
+    if isinstance(x, bool | np.bool_ | int) and x in (0, 1):
+        return bool(x)
+    raise TirError(f"{name} is {reprlib.repr(x)}: give True or False", name=name)
+
+
 def records(x: Any) -> bool:
     """Whether a number records the operations of numpy that are applied to it."""
     return isinstance(x, np.lib.mixins.NDArrayOperatorsMixin)

@@ -21,7 +21,7 @@ from tir.defaults import completed, followed
 from tir.document import Document
 from tir.equations.normalise import Switches
 from tir.errors import Problem, TirError
-from tir.inputs import records, way_for
+from tir.inputs import records, switch_of, way_for
 from tir.mode import SwitchOptions, asks_for_turn_slip, warn, warn_of_doubt
 from tir.parameters import BY_NAME, TABLE
 
@@ -112,9 +112,13 @@ class TyreRecord:
         return asks_for_turn_slip(self.values)
 
     def switches(self, phi_t: Any = None, **options: Unpack[SwitchOptions]) -> Switches:
-        """The switches of a call or an export; by default spin also acts in a call that gives ``phi_t``."""
-        on, others = options.pop("turn_slip", None), {name: bool(x) for name, x in options.items()}
-        return Switches(phi_t is not None or self.turn_slip if on is None else bool(on), **others)
+        """The switches of a call or an export; by default spin also acts in a call that gives ``phi_t``.
+
+        Raises TirError for what is neither True nor False.
+        """
+        if options.get("turn_slip") is None:
+            options["turn_slip"] = phi_t is not None or self.turn_slip
+        return Switches(**{name: switch_of(name, x) for name, x in options.items()})
 
     @cached_property
     def may_turn(self) -> bool:

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, Never, Protocol, Self, TypeVar, Unpack, o
 
 from tir import calls
 from tir.codegen.arrays import array_function
-from tir.codegen.program import Switches
 from tir.constants import NAMES_IN_A_SENTENCE
 from tir.document import Document, encoded, read_document
 from tir.equations.forces import Forces, State
@@ -215,7 +214,7 @@ class Tyre(TyreRecord):
             return tuple.__new__(Forces, run(Fz, alpha, gamma, kappa, phi_t, Vx, p))
         except (KeyError, TypeError, ArithmeticError, ValueError):
             pass
-        switches = Switches(bool(turn_slip), bool(star), bool(limits))
+        switches = self.switches(phi_t, turn_slip=turn_slip, star=star, limits=limits)
         return calls.forces(self, (Fz, alpha, gamma, kappa, phi_t, Vx, p), switches)
 
     @evaluation
@@ -263,8 +262,9 @@ class Tyre(TyreRecord):
         """The tyre as a function of the arrays of a library that differentiates: JAX, torch; also numpy and CuPy.
 
         ``f = tyre.array_function(jax.numpy)`` takes Fz, alpha, gamma, kappa, phi_t, Vx, p (ISO-W, SI, radians) in this order or
-        by name, scalars or arrays that broadcast. It goes through ``jit``, ``vmap`` and ``grad``. An input left out is FNOMIN,
-        LONGVL, INFLPRES, the factor of the file, else 0. Derivatives are finite everywhere: where one is infinite, it is 0.
+        by name, real scalars or arrays that broadcast; it refuses what a call of the tyre refuses. It goes through ``jit``,
+        ``vmap`` and ``grad``. An input left out is as in a call, a factor that of the file. Derivatives are finite everywhere:
+        where one is infinite, it is 0.
 
         Parameters
         ----------

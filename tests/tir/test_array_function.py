@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from decimal import Decimal
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -60,8 +62,57 @@ def test_in_numpy_it_is_the_tyre(tyre, turn_slip, limits):
 
 
 def test_inputs_left_out_are_those_of_the_file(tyre):
-    found = tyre.array_function(np, turn_slip=True)(alpha=0.05)
-    assert float(found.Fy) == pytest.approx(tyre(tyre["FNOMIN"], 0.05, turn_slip=True).Fy, rel=1e-12)
+    function, wanted = tyre.array_function(np, turn_slip=True), tyre(1400.0, 0.05, turn_slip=True)
+    assert float(function(1400.0, alpha=0.05).Fy) == pytest.approx(wanted.Fy, rel=1e-12)
+    assert function(1400.0, 0.05, phi_t=None, Vx=None, p=None) == function(1400.0, 0.05)
+    with pytest.raises(TypeError, match="Fz"):
+        function(alpha=0.05)
+    with pytest.raises(TypeError, match="Fz"):
+        tyre(alpha=0.05)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        None,
+        "1400",
+        Decimal(1400),
+        np.datetime64("2026-01-01"),
+        np.array(["1400"]),
+        np.array([1400.0, None], dtype=object),
+        np.ma.masked_greater([1000.0, 2000.0], 1500.0),
+    ],
+    ids=repr,
+)
+def test_what_a_call_refuses_is_refused(tyre, wrong):
+    said = set()
+    for call in (tyre, tyre.array_function(np)):
+        with pytest.raises(tir.TirError, match=r"^Fz is ") as refused:
+            call(wrong)
+        said.add(str(refused.value))
+    assert len(said) == 1
+
+
+def test_complex_numbers_are_those_of_a_call(tyre):
+    with pytest.raises(tir.TirError, match=r"alpha is .*: for complex numbers call the tyre"):
+        tyre.array_function(np)(1400.0, 0.05 + 1e-20j)
+
+
+@pytest.mark.parametrize("switch", ["turn_slip", "star", "limits"])
+def test_a_switch_is_true_or_false(tyre, switch):
+    for call in (partial(tyre, 1400.0), partial(tyre.state, 1400.0), partial(tyre.array_function, np)):
+        with pytest.raises(tir.TirError, match=f"{switch} is 'yes': give True or False"):
+            call(**{switch: "yes"})
+    assert tyre(1400.0, 0.05, **{switch: np.True_}) == tyre(1400.0, 0.05, **{switch: True})
+
+
+def test_numbers_beyond_the_formula_are_quiet(tyre):
+    """Warnings fail the tests."""
+    found = tyre.array_function(np)(
+        np.array([1400.0, np.nan, np.inf, 1400.0]), np.array([0.05, 0.05, 0.05, np.inf])
+    )
+    assert np.isfinite(found.Fy[0])
+    assert np.isnan(found.Fy[1])
 
 
 def test_outputs_and_factors_are_chosen(tyre):

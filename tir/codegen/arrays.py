@@ -12,18 +12,21 @@ from tir.codegen.program import called
 from tir.equations.forces import Forces
 from tir.errors import TirError
 from tir.exporting import ExportedTyre
+from tir.inputs import of_library
+
+WITHOUT_VALUE = ("phi_t", "Vx", "pressure")
+"""Inputs that a call takes without a value, as None."""
 
 
 def array_function(made: ExportedTyre, outputs: tuple[str, ...], xp: Any) -> Callable[..., Any]:
     """The tyre as a function of arrays of ``xp``; see :meth:`tir.Tyre.array_function`."""
 
-    def number(x: Any) -> Any:
-        """A plain number, or an array of numpy, in double precision; any other array as it is, with what traces it."""
-        own = hasattr(x, "dtype") and not isinstance(x, np.ndarray | np.generic)
-        return x if own else xp.asarray(x, dtype=float)
+    def array(x: Any) -> Any:
+        """A number of the program as an array, and any array as it is."""
+        return x if hasattr(x, "dtype") else xp.asarray(x, dtype=float)
 
     def where(chosen: Any, a: Any, b: Any) -> Any:
-        return xp.where(chosen, number(a), number(b))
+        return xp.where(chosen, array(a), array(b))
 
     def absolute(x: Any) -> Any:
         """With slope 0 at zero: the mean of both sides, as in CasADi; some libraries take that of one side."""
@@ -37,14 +40,19 @@ def array_function(made: ExportedTyre, outputs: tuple[str, ...], xp: Any) -> Cal
         ) from None
     program, starts = made.program(outputs), made.starts
     given = [Parameter(called(x), Parameter.POSITIONAL_OR_KEYWORD, default=starts[x]) for x in starts]
-    signature = Signature(given)
+    signature = Signature([given[0].replace(default=Parameter.empty), *given[1:]])
     result: Any = Forces if outputs == Forces._fields else namedtuple("Outputs", outputs)
 
     def function(*args: Any, **more: Any) -> Any:
         bound = signature.bind(*args, **more)
         bound.apply_defaults()
-        inputs = dict(zip(starts, map(number, bound.arguments.values()), strict=True))
-        return result(*map(number, run(program, operations, inputs)))
+        named = {
+            name: starts[name] if x is None and name in WITHOUT_VALUE else x
+            for name, x in zip(starts, bound.arguments.values(), strict=True)
+        }
+        inputs = {name: of_library(name, x, xp) for name, x in named.items()}
+        with np.errstate(all="ignore"):
+            return result(*map(array, run(program, operations, inputs)))
 
     function.__signature__ = signature  # type: ignore[attr-defined]
     return function

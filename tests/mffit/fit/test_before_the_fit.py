@@ -15,8 +15,6 @@ from mffit.fit.agreement import agreement
 from mffit.fit.ranges import plausible_ranges
 from mffit.fit.rig.zeros import epsilon_gamma_of_model, zero_points
 from mffit.fit.start import camber_stiffness_terms, starting_values
-from mffit.fit.upright import nearest
-from mffit.fit.wheel.rolling import RADIUS_COEFFICIENTS, effective_radius
 from mffit.points import make_points
 from tir import Quantity
 
@@ -95,18 +93,6 @@ def test_the_start_is_not_zero_where_all_derivatives_vanish_at_zero():
     assert 0.02 < start["QDZ1"] < 0.3
     kept = starting_values({**empty.values, "QBZ1": 3.0}, campaign(truth()), measured_of({}, {}))
     assert kept["QBZ1"] == 3.0
-
-
-@pytest.mark.parametrize("loads", [(1400.0,), (900.0, 2100.0)])
-def test_the_files_radius_passes_through_the_measured_ones(tyre, loads):
-    measured = {load: 0.297 - 3e-6 * load for load in loads}
-    at, radii = np.array(loads), np.array(list(measured.values()))
-    found = tyre.replace(
-        **nearest(tyre.values, RADIUS_COEFFICIENTS, lambda v: effective_radius(v, at, 6.0), radii)
-    )
-    for load, r_e in measured.items():
-        assert found.state(load, Vx=6.0).Re == pytest.approx(r_e, abs=1e-12)
-    assert found.state(loads[0], Vx=30.0).Re > measured[loads[0]]  # it grows with speed
 
 
 def test_the_models_own_epsilon_gamma_is_pecp1_where_spin_is_small(tyre):
