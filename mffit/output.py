@@ -1,5 +1,7 @@
 """Output folders that are written completely or not at all, and never over files that mffit did not write."""
 
+from __future__ import annotations
+
 import contextlib
 import errno
 import hashlib
