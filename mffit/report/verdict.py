@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from mffit.comparison.characteristics import DECIDED_BY, Tested, characteristics
+from mffit.fit.agreement import Agreement
 from mffit.measured.wording import SOURCES
 from mffit.prediction import OnRoad
 from mffit.prediction.road import lesser
@@ -11,6 +12,7 @@ from mffit.results import BuildResult
 from mffit.rounding import AtLeast, number, stated, times
 from mffit.tested import NO_FX, lacks_fx
 from tir import Quantity
+from tir.errors import listed
 
 JUDGED = {"distrusted": "NOT TO BE TRUSTED", "doubted": "in doubt", "sound": "sound"}
 FOR = {
@@ -46,14 +48,20 @@ def judged(result: BuildResult) -> str:
 
 def verdict(result: BuildResult) -> str:
     """The judgement and the misfit in a sentence."""
-    fits = []
-    for name, a in result.fit.of_file.items():
-        if a.n:
-            ratio = over_noise(result, name)
-            noise = f" ({times(ratio, 1.0)} the noise)" if ratio and ratio == ratio else ""
-            fits.append(f"{number(a.rmse, digits=3)} {CHANNELS[name].unit} in {name}{noise}")
-    what = f"{len(result.points)} points are fitted to {', '.join(fits[:-1])}{' and ' * (len(fits) > 1)}{fits[-1]}"
+    fit, ratios = result.fit, result.trust.over_noise
+    misfit = {name: f"{_rmse(name, a)} in {name}" for name, a in fit.channels.items() if a.n}
+    for name in misfit:
+        if (ratio := ratios.get(name, 0.0)) > 0.0:
+            misfit[name] += f" ({times(ratio, 1.0)} the noise)"
+    what = f"{len(result.points)} points are fitted to {listed([*misfit.values()])}"
+    if fit.runs is not None:
+        left = [_rmse(name, a) for name, a in fit.of_file.items() if a.n]
+        what += f"; the file, which holds for the mean of the runs, leaves {listed(left)}"
     return f"{result.tir_path} is {judged(result)}: {what}."
+
+
+def _rmse(channel: str, found: Agreement) -> str:
+    return f"{number(found.rmse, digits=3)} {CHANNELS[channel].unit}"
 
 
 def over_noise(result: BuildResult, channel: str) -> float | None:

@@ -52,7 +52,7 @@ def project_data(result: BuildResult, *, verdict: str = "", judgement: str = "")
             "verdict": verdict,
             "judgement": judgement,
             "trusted": result.trusted,
-            "warnings": [*result.reasons, *result.warnings],
+            "warnings": result.warnings,
             "seconds": result.seconds,
             "others": [
                 {

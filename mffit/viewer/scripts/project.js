@@ -116,7 +116,7 @@ export async function showProject(data) {
   listCoefficients();
   const fit = project.channels.filter(one => one.of_fit).map(one =>
     `${one.name} ${written(shownIn(one.name, one.rmse))} ${quantity(one.name).unit}`).join(", ");
-  byId("content").classList.toggle("before", !channels.length);
+  document.body.classList.toggle("before", !channels.length);
   byId("verdict").textContent = project.verdict;
   byId("verdict").className = project.judgement;
   byId("about").textContent = !channels.length ? `${project.points.fitted} points; the fit is under way`

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 from mffit.measured import Contribution, align
 from mffit.measured.result import FINITE_SPIN
 from mffit.report import text
 from mffit.report.constants import MOST_REASONS
 from mffit.report.text.layout import columns
+from mffit.report.verdict import verdict
 from mffit.rounding import ascii_only, decimals_of, stated
 from mffit.suspicion import Trust
 from tir import Quantity
@@ -65,6 +67,18 @@ def test_build_summary_begins_with_the_verdict_and_fits_a_screen(result):
     assert f"{result.fit.channels['Fy'].rmse:.2f} N in Fy" in summary
     assert "front-1.tir: for simulators that compute turn slip (USE_MODE" in summary
     assert len(summary.splitlines()) <= 25
+
+
+def test_the_verdict_states_what_was_fitted_and_what_the_file_leaves(result):
+    """With effects of the runs they are two numbers; the window shows the first one, too."""
+    Fy, Mz = result.fit.channels["Fy"], result.fit.channels["Mz"]
+    alone = {"Fy": replace(Fy, rmse=2.0 * Fy.rmse), "Mz": Mz}
+    runs = SimpleNamespace(alone=alone)
+    said = verdict(replace(result, fit=replace(result.fit, runs=runs)))
+    assert f"fitted to {Fy.rmse:.3g} N in Fy" in said
+    assert said.endswith(
+        f"; the file, which holds for the mean of the runs, leaves {2.0 * Fy.rmse:.3g} N and {Mz.rmse:.3g} Nm."
+    )
 
 
 def test_the_zeros_of_all_channels_stand_in_the_list(result):

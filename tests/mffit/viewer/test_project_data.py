@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 import mffit
 from mffit.points import make_points
 from mffit.quantities import CONDITIONS
+from mffit.suspicion import Trust
 from mffit.viewer.project import coefficient_rows, project_data
 from mffit.viewer.project_points import facets
 
@@ -55,6 +57,15 @@ def test_every_condition_with_set_points_is_a_filter():
     assert {q.word for q in CONDITIONS.values()} - words == {"temperature", "time"}
     swept = make_points(np.linspace(-0.3, 0.3, 200), 0.0, 1000.0, p=2e5, V=10.0, phi_t=0.0)
     assert {f["name"] for f in facets(swept)[0] if f["as_range"]} == {"alpha"}
+
+
+def test_a_reason_against_trust_is_a_single_warning(result):
+    """Like the doubts, the reasons are among the warnings of the result."""
+    reason = "a limit of the curves holds QEZ1"
+    distrusted = replace(
+        result, trust=Trust((reason,)), warnings=(f"the result is not to be trusted: {reason}", "x")
+    )
+    assert len(project_data(distrusted)["warnings"]) == 2
 
 
 def test_channels_beside_the_fit_have_the_misfit_of_the_file(result):

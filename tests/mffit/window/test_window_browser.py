@@ -578,7 +578,7 @@ def test_points_are_seen_before_the_first_fit_ends(browser, tyre_toml, result):
             ask(browser, "mffit.visible().length") == len(result.points) + 1
         )  # with the one that is left out
         assert len(visible("figure.panel")) >= len(result.points.measured)
-        assert not visible("aside, #undo, #links button, #bands, #reading")
+        assert not visible("aside, #undo, #links button, #bands, #reading, footer .of-fit")
         assert console_errors(browser) == []
         ask(browser, "mffit.choose(0)")
         assert visible("#chosen-actions button")
