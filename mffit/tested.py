@@ -3,10 +3,18 @@
 import re
 
 from tir import Tyre
+from tir.parameters import TABLE
 
 NOT_MEASURED = ("default", "estimate")
 """First words of the comments of values that were not measured."""
 NO_FX = "Fx is estimated"
+OF_OUTPUT = {
+    **dict.fromkeys(("Fx", "K_xk"), ("PKX1",)),
+    **{name: tuple(row.name for row in TABLE if row.channel == name) for name in ("Mx", "My")},
+    "sigma_y": ("LATERAL_STIFFNESS",),
+    "Re": ("BREFF", "DREFF", "FREFF"),
+}
+"""By output of the model that a test may leave out, the coefficients of which it measures at least one."""
 
 
 def words_on_tested(end: float, unit: str) -> str:
@@ -26,6 +34,15 @@ def tested_limit(tyre: Tyre, key: str) -> float:
     return float(tyre[key]) if found is None else found
 
 
+def estimated(tyre: Tyre) -> list[str]:
+    """The outputs that were not measured: by the comments of the file, all their coefficients are estimates or defaults."""
+    return [
+        output
+        for output, names in OF_OUTPUT.items()
+        if all(tyre.status.get(name, "").startswith(NOT_MEASURED) for name in names)
+    ]
+
+
 def lacks_fx(tyre: Tyre) -> bool:
-    """Whether the longitudinal force was not measured: by the comments of the file its stiffness is an estimate."""
-    return tyre.status.get("PKX1", "").startswith(NOT_MEASURED)
+    """Whether the longitudinal force was not measured."""
+    return "Fx" in estimated(tyre)

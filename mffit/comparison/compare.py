@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mffit.comparison import constants, wording
-from mffit.comparison.characteristics import Tested, characteristics, with_slopes
+from mffit.comparison.characteristics import DECIDED_BY, Tested, characteristics, with_slopes
 from mffit.comparison.record import (
     ComparedSubject,
     Comparison,
@@ -27,10 +27,13 @@ from mffit.quantities import KEYS, SIDEWAYS
 from mffit.rig import Readings, Simulation
 from mffit.rounding import AtLeast
 from mffit.scatter import rms
+from mffit.tested import NOT_MEASURED, estimated
 from tir.parameters import TABLE
 
 CURVES = (("alpha", "ALPMAX", (*SIDEWAYS,)), ("gamma", "CAMMAX", (*SIDEWAYS,)), ("kappa", "kappa", ("Fx",)))
 """The varied quantity, the key of its range, and the channels whose curves are compared."""
+OUTPUT_OF = {"r_e_m": "Re", **{key: by.channel for key, by in DECIDED_BY.items()}}
+"""By number, the output of the model that it is read off."""
 DIRECT_ROWS = ("epsilon_gamma", "C_phit", "C_gamma", "C_alpha", "F_phit")
 
 
@@ -51,16 +54,18 @@ def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
     reach["kappa"] = tested.kappa
     numbers = [row for load in loads for row in _numbers(first, second, load, tested, shared)]
     curves = [gap for load in loads for gap in _curves(first, second, load, reach)]
+    coefficients = _coefficients(first, second, shared)
     return Comparison(
         first=first.name,
         second=second.name,
         numbers=ranked(numbers),
-        coefficients=_coefficients(first, second, shared),
+        coefficients=coefficients,
         curves=tuple(curves),
         sweeps=(),
         notes=(
             *wording.notes_between(first, second, shared),
             *wording.notes_on_peaks(numbers, tested),
+            *wording.notes_on_estimates(first.name, second.name, (*numbers, *coefficients)),
             *(wording.note_on_own_peaks(numbers) if first.build or second.build else ()),
         ),
         apart=wording.apart(first, second),
@@ -110,7 +115,16 @@ def _numbers(
                 covariance=float(moved[0][key] @ moved[1][key]),
                 at_least_first=isinstance(a[key], AtLeast),
                 at_least_second=isinstance(b[key], AtLeast),
+                estimated_first=_is_estimated(first, key, u[0]),
+                estimated_second=_is_estimated(second, key, u[1]),
             )
+
+
+def _is_estimated(side: ComparedSubject, key: str, u: float | None) -> bool:
+    """Whether a side did not measure a number or coefficient: by the comments of its file, or as its build has no uncertainty."""
+    output = OUTPUT_OF.get(key, "")
+    by_file = output in estimated(side.tyre) or side.tyre.status.get(key, "").startswith(NOT_MEASURED)
+    return by_file or (side.known is not None and not u)
 
 
 def _moved(
@@ -173,6 +187,8 @@ def _coefficients(first: ComparedSubject, second: ComparedSubject, shared: Share
             second=float(second.tyre[name]),
             u_first=u_first.get(name),
             u_second=u_second.get(name),
+            estimated_first=_is_estimated(first, name, u_first.get(name)),
+            estimated_second=_is_estimated(second, name, u_second.get(name)),
             covariance=sum(x.get(name, 0.0) * y.get(name, 0.0) for x, y in shared.values()),
         )
         for name in names

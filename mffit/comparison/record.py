@@ -55,6 +55,8 @@ class Difference:
     covariance: float = 0.0  #: covariance of both sides from errors of a common rig
     at_least_first: bool = False  #: a largest force that is not a peak, see :class:`mffit.rounding.AtLeast`
     at_least_second: bool = False
+    estimated_first: bool = False  #: the first side did not measure it
+    estimated_second: bool = False
 
     @property
     def change(self) -> float:
@@ -62,7 +64,9 @@ class Difference:
 
     @property
     def u(self) -> float | None:
-        """Uncertainty of the difference; None if those of both sides are unknown."""
+        """Uncertainty of the difference; None if those of both sides are unknown, or if one side did not measure the number."""
+        if self.estimated_first or self.estimated_second:
+            return None
         known = [u for u in (self.u_first, self.u_second) if u is not None]
         return math.sqrt(max(sum(u**2 for u in known) - 2.0 * self.covariance, 0.0)) if known else None
 

@@ -212,6 +212,21 @@ def notes_on_peaks(numbers: Iterable[Difference], tested: Tested) -> Iterator[st
         yield f'"At least": the curve does not fall up to the end of the slip compared, {listed(sorted(ends))}.'
 
 
+def notes_on_estimates(first: str, second: str, rows: Iterable[Difference]) -> Iterator[str]:
+    """Remarks on what differs although a side did not measure it."""
+    apart = [row for row in rows if row.change]
+    for side, of_side in (
+        (first, [row for row in apart if row.estimated_first]),
+        (second, [row for row in apart if row.estimated_second]),
+    ):
+        words = [row.key if row.load is None else CHARACTERISTICS[row.key].word for row in of_side]
+        if words:
+            yield (
+                f"{side} did not measure {some(list(dict.fromkeys(words)))}: its value is estimated or given, and the difference "
+                "has no significance."
+            )
+
+
 def note_on_own_peaks(numbers: Iterable[Difference]) -> Iterator[str]:
     """A remark on the peaks that a build states on its road under the plain name."""
     named = [CHARACTERISTICS[key].ascii for key in OF_ROAD if any(row.key == key for row in numbers)]

@@ -16,7 +16,7 @@ from mffit.scatter import finite_median
 from tir.frozen import ReadOnlyArrays
 from tir.parameters import BY_NAME, Parameter
 
-NOT_DECIDED = ("base", "converted", "default", "given", "range")
+NOT_DECIDED = ("base", "converted", "default", "estimate", "given", "range")
 """Statuses of values that neither the data nor a model of them decided."""
 
 

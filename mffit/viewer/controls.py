@@ -110,7 +110,7 @@ def written_range(tyre: Tyre, control: Control) -> tuple[float, float] | None:
 
 
 def settings(tyres: Sequence[Tyre]) -> list[dict[str, object]]:
-    """The settings of each slider in the units of the page; ends and steps are round numbers."""
+    """The settings of each slider in the units of the page; ends and steps are round numbers within the ranges of the files."""
     return [_setting(control, tyres) for control in CONTROLS]
 
 
@@ -126,8 +126,8 @@ def _setting(control: Control, tyres: Sequence[Tyre]) -> dict[str, object]:
     return {
         "name": control.name,
         "si": si,
-        "min": round(math.floor(low / step + 1e-9) * step, digits),
-        "max": round(math.ceil(high / step - 1e-9) * step, digits),
+        "min": round(min(math.ceil(low / step - 1e-9), math.floor(start / step)) * step, digits),
+        "max": round(max(math.floor(high / step + 1e-9), math.ceil(start / step)) * step, digits),
         "step": round(step, digits),
         "start": start,
     }

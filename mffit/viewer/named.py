@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 import tir
 from mffit.errors import InputError
-from mffit.tested import end_tested, lacks_fx
+from mffit.tested import end_tested, estimated
 from mffit.viewer.controls import CONTROLS, OUTPUTS, Control, written_range
 from tir import Tyre
 from tir.codegen.program import Switches, refuse_zero_divisors
@@ -59,7 +59,7 @@ def described(name: str, tyre: Tyre, parameters: Iterable[str]) -> dict[str, obj
         "values": {key: float(tyre[key]) for key in parameters},
         "ranges": {control.name: _ranges(tyre, control) for control in CONTROLS if control.limits},
         "turn_slip": tyre.turn_slip,
-        "estimated": ["Fx", "K_xk"] if lacks_fx(tyre) else [],
+        "estimated": [name for name in estimated(tyre) if name in OUTPUTS],
         "doubt": bool(doubt(tyre.values, tyre.present)),
     }
 

@@ -208,7 +208,8 @@ function fillRow(tyre) {
     .map(name => content.quantities[name].word).join(", ");
   const notes = [`turn slip ${isOn(tyre) ? "on" : "off"}`];
   if (isOn(tyre) && tyre.doubt) notes.push("its coefficients of turn slip are defaults or zero");
-  if (tyre.estimated.length) notes.push("Fx estimated, not measured");
+  const guessed = tyre.estimated.map(name => content.quantities[name].word).join(", ");
+  if (guessed) notes.push(`estimated, not measured: ${guessed}`);
   if (beyond(OUTSIDE)) notes.push(`outside the file's range: ${beyond(OUTSIDE)}`);
   if (beyond(UNTESTED)) notes.push(`beyond the tested range: ${beyond(UNTESTED)}`);
   tyre.about.textContent = notes.join("; ");

@@ -116,6 +116,30 @@ def test_a_comparison_says_where_the_readings_of_both_end():
     assert {one["key"] for one in content if one["at_least_first"]} == {"mu_y"}
 
 
+def test_what_a_side_did_not_measure_has_no_significance():
+    """A radius and an arm of Mx by rule of thumb, against a build that measured both; what both measured keeps its place."""
+    names = ("DREFF", "QSX3", "PKY1")
+    known = known_to(names, np.diag([0.01, 1e-4, 0.1]) ** 2)
+    guesses = dict.fromkeys(("BREFF", "DREFF", "FREFF", "QSX3"), "estimate, not measured")
+    measured = ComparedSubject("measured", truth(), False, known)
+    other = truth().replace(DREFF=0.5, QSX3=0.2, PKY1=-25.0)
+    guessed = ComparedSubject("guessed", other.annotate(status=guesses), False)
+    for one, two, side in ((measured, guessed, "second"), (guessed, measured, "first")):
+        found = between(one, two)
+        rows = {**by_key(found), **{row.key: row for row in found.coefficients}}
+        for key in ("r_e_m", "QSX3"):
+            assert rows[key].change
+            assert rows[key].z is None
+            assert rows[key].u is None
+            assert getattr(rows[key], f"estimated_{side}")
+        assert {row.key for row in found.significant} >= {"PKY1", "C_alpha_N_per_rad"}
+        (note,) = (note for note in found.notes if note.startswith("guessed did not measure"))
+        assert "effective radius" in note
+        assert "QSX3" in note
+    both = between(measured, ComparedSubject("exact", other, False))
+    assert {"r_e_m", "QSX3"} <= {row.key for row in both.significant}
+
+
 def test_peaks_of_a_file_have_another_name_than_those_of_a_road():
     """Reason and side are stated where a build, which has a road, is on either side; two plain files have none."""
     one, other = (ComparedSubject(name, reaching(truth(), 14.0), False) for name in "ab")

@@ -115,16 +115,31 @@ def test_the_tested_range_of_a_build_is_read_back():
     assert ranges["gamma"]["tested"] is None
 
 
-def test_an_estimated_longitudinal_force_is_told_from_a_measured_one():
-    known = tir.read(FRONT).annotate(status={"PKX1": "fitted +- 0.3"})
-    guessed = known.annotate(status={"PKX1": "estimate, not measured"})
-    assert [described("x", tyre, [])["estimated"] for tyre in (known, guessed)] == [[], ["Fx", "K_xk"]]
+@pytest.mark.parametrize(
+    ("outputs", "estimates"),
+    [
+        (["Fx", "K_xk"], ["PKX1"]),
+        (["Mx"], [*(f"QSX{i}" for i in range(1, 15)), "PPMX1"]),
+        (["My"], [f"QSY{i}" for i in range(1, 9)]),
+        (["sigma_y"], ["LATERAL_STIFFNESS"]),
+    ],
+)
+def test_an_estimated_output_is_told_from_a_measured_one(outputs, estimates):
+    known = tir.read(FRONT).annotate(status=dict.fromkeys(estimates, "fitted +- 0.3"))
+    one = known.annotate(status=dict.fromkeys(estimates[1:], "default, not measured"))
+    guessed = one.annotate(status={estimates[0]: "estimate, not measured"})
+    found = [described("x", tyre, [])["estimated"] for tyre in (known, one, guessed)]
+    assert found == [[], [], outputs]
 
 
 def test_sliders_reach_as_far_as_the_files_and_no_further_than_tyres():
     by_name = {row["name"]: row for row in settings([tir.read(FRONT)])}
     assert (by_name["Fz"]["min"], by_name["Fz"]["max"], by_name["Fz"]["start"]) == (200, 3500, 1400)
     assert by_name["gamma"]["max"] == pytest.approx(math.degrees(0.96), abs=0.5)
+    uneven = tir.read(FRONT).replace(FZMIN=697.5, FZMAX=3303.0)
+    row = settings([uneven])[0]
+    assert row["min"] >= 697.5 > row["min"] - row["step"]
+    assert row["max"] <= 3303.0 < row["max"] + row["step"]
     endless = tir.Tyre.from_values({"FNOMIN": 1000.0, "UNLOADED_RADIUS": 0.3, "ALPMIN": -1.5, "ALPMAX": 1.5})
     by_name = {row["name"]: row for row in settings([endless])}
     assert by_name["alpha"]["max"] == pytest.approx(20.0)

@@ -223,7 +223,10 @@ def test_what_follows_from_an_estimated_longitudinal_force_is_dashed(tmp_path):
             panel: browser.execute_script(f"return window.mffit.curve('{panel}', 0).map(p => p.zone)")
             for panel in ("Fx-kappa", "Fy-alpha")
         }
-        assert "Fx estimated" in browser.find_element("css selector", "#legend .about").text
+        assert (
+            "estimated, not measured: longitudinal force"
+            in browser.find_element("css selector", "#legend .about").text
+        )
     assert min(zones["Fx-kappa"]) == 1
     assert min(zones["Fy-alpha"]) == 0
 
