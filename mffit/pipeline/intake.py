@@ -103,7 +103,7 @@ def entry_of(path: Path, config: Config) -> SweepTable:
             if (raw.headings, raw.units) == (other.headings, other.units):
                 entry = SweepTable(file=relative(path, config.folder), columns=known.columns)
                 return entry.model_copy(update={"direction": "backward"}) if rolls_backward(path) else entry
-    found = sniff([path], unloaded_radius=config.tyre.unloaded_radius)
+    found = sniff([path], unloaded_radius=config.tyre.unloaded_radius, columns=config.columns)
     text = sweeps_text(found, config.folder, config.columns)
     return SweepTable.model_validate(tomllib.loads(text)["sweep"][0])
 

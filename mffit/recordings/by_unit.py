@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 
 from mffit.recordings.tyre_constants import NAMES
-from mffit.recordings.unstated import FoundChannel
+from mffit.recordings.unstated import FoundChannel, Guess, Remark
 from mffit.sweeps.channels import SWEEP_CHANNELS, Channel
 from mffit.sweeps.columns import UNCERTAINTIES, implausible, numbers
 from mffit.sweeps.raw_table import RawTable
@@ -78,12 +78,13 @@ def _fits(column: FoundChannel) -> bool:
     )
 
 
-def taken_for(column: FoundChannel) -> str:
+def taken_for(guess: Guess) -> Remark:
     """The question about a column that is taken because of its unit."""
-    channel = column.channel
-    return (
-        f"{column.heading} [{column.stated}] is taken as {channel.name}, because no other unused column has a unit of "
-        f"{KINDS[channel.unit]}: is it the {channel.description}? If not, remove {channel.name} under [columns]"
+    channel = guess.channel
+    return Remark(
+        f"{guess.heading} [{guess.stated}] is taken as {channel.name}, because no other unused column has a unit of "
+        f"{KINDS[channel.unit]}: is it the {channel.description}?",
+        f" If not, remove {channel.name} under [columns]",
     )
 
 
@@ -103,7 +104,7 @@ def named_alike(channel: Channel, raw: RawTable, taken: Collection[str]) -> list
     ]
 
 
-def questions(raw: RawTable, found: Collection[str], taken: Collection[str]) -> list[str]:
+def questions(raw: RawTable, found: Collection[str], taken: Collection[str]) -> list[Remark]:
     """Questions about missing channels: for those that words of unused columns fit, and for every kind of unit of the others."""
     asked, proposed = [], set(taken)
     missing = [c for c in SWEEP_CHANNELS if c.name not in (*found, *UNCERTAINTIES, "t_s")]
@@ -120,13 +121,13 @@ def questions(raw: RawTable, found: Collection[str], taken: Collection[str]) -> 
     return asked
 
 
-def question(missing: Sequence[Channel], near: Sequence[str], raw: RawTable, alike: str) -> str:
+def question(missing: Sequence[Channel], near: Sequence[str], raw: RawTable, alike: str) -> Remark:
     """Ask whether one of the columns ``near`` is one of the missing channels; ``alike`` says why these columns are proposed."""
     names = [f"{channel.name} ({channel.description})" for channel in missing]
     columns = ", ".join(f'"{heading}" [{raw.unit(heading)}]'.removesuffix(" []") for heading in near)
     name, heading = missing[0].name, near[0]
     sign = ", with scale = -1 if braking is positive in it" if name == "Fx_N" else ""
-    return (
-        f"no heading is known to be {' or '.join(names)}; unused columns {alike}: {columns}; is it one of them? Then give "
-        f"--column '{name}={heading}', or write {name} = \"{heading}\" under [columns]{sign}"
+    return Remark(
+        f"no heading is known to be {' or '.join(names)}; unused columns {alike}: {columns}; is it one of them?",
+        f" Then give --column '{name}={heading}', or write {name} = \"{heading}\" under [columns]{sign}",
     )

@@ -10,7 +10,7 @@ import numpy as np
 from mffit.constants import UPRIGHT
 from mffit.points import Points
 from mffit.recordings import constants
-from mffit.recordings.recording import rolls_backward
+from mffit.recordings.recording import rolls_backward, speed_is_negative
 from mffit.recordings.sniffed import Sniffed, points_from
 from mffit.suspicion.constants import SIDESLIP_OF_SLOPES
 from mffit.sweeps import formats
@@ -26,10 +26,11 @@ class DiscPath(NamedTuple):
 def disc_signs(sniffed: Sniffed) -> list[str]:
     """Each sign of a disc, as a phrase; empty for recordings of a belt."""
     found = []
-    backward = [r.path for r in sniffed.recordings if r.backward]
+    backward = [r for r in sniffed.recordings if r.backward]
     if backward:
-        why = "is named as rolling backwards" if rolls_backward(backward[0]) else "has negative speeds"
-        found.append(f"{backward[0].name} {why}")
+        of_speed = "has negative speeds" if speed_is_negative(backward[0].guesses) else "rolls backwards"
+        why = "is named as rolling backwards" if rolls_backward(backward[0].path) else of_speed
+        found.append(f"{backward[0].path.name} {why}")
     of_files = [points_from(sniffed.points, {str(r.path.absolute())}) for r in sniffed.recordings]
     if any(len(np.unique(points.direction)) > 1 for points in of_files):
         found.append("the wheel rolls both ways")

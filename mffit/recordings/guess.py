@@ -10,16 +10,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.config.models import Column
 from mffit.points.constants import FEWEST_POINTS
 from mffit.recordings import constants
 from mffit.recordings.by_unit import is_of_kind, only_ones, questions, taken_for
 from mffit.recordings.slip_definition import SLIP, slip_definition
-from mffit.recordings.unstated import Choice, FoundChannel, Guess, choices
+from mffit.recordings.unstated import Choice, FoundChannel, Guess, Remark, choices
 from mffit.sweeps.about import simplified
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel
 from mffit.sweeps.columns import numbers, standing
 from mffit.sweeps.frames import FORCES, MOMENTS, letter_of
-from mffit.sweeps.raw_table import RawTable
+from mffit.sweeps.raw_table import RawTable, with_values
 from mffit.sweeps.units import converted, is_unit, spelt
 from mffit.sweeps.wide import FROM_NAMES
 from tir.errors import counted
@@ -40,6 +41,7 @@ ABOUT_LETTERS = {
 
 
 NOTHING_NAMED: Mapping[str, str] = {}
+NO_COLUMNS: Mapping[str, Column] = {}
 
 
 class ColumnChoice(NamedTuple):
@@ -55,7 +57,7 @@ class Guesses(NamedTuple):
     """The channels of a file, by the contract's names, with remarks for the user."""
 
     found: dict[str, Guess]
-    remarks: tuple[str, ...]
+    remarks: tuple[Remark, ...]
 
 
 def guesses(
@@ -63,13 +65,40 @@ def guesses(
     *,
     unloaded_radius: float | None = None,
     named: Mapping[str, str] = NOTHING_NAMED,
-    given: Collection[str] = (),
+    columns: Mapping[str, Column] = NO_COLUMNS,
 ) -> Guesses:
     """The guessed channels of a file, and remarks.
 
     The unloaded radius [m], if known, checks the speed of rotation. ``named`` are the user's headings by channel, which replace
-    those that laboratories use; ``given`` are channels whose value the user gives. Samples at standstill are ignored.
+    those that laboratories use; ``columns`` are [columns] of a project that reads the file, or values that the user gives for
+    all rows. Samples at standstill are ignored.
     """
+    values = {name: column.value for name, column in columns.items() if column.value is not None}
+    raw = with_values(raw, values)
+    guessed = _guessed(raw, unloaded_radius, named, values)
+    for name in values.keys() & guessed.found.keys():
+        guessed.found[name] = guessed.found[name]._replace(value=values[name])
+    declared = {name: column.column or name for name, column in columns.items() if column.value is None}
+    there = {name: heading for name, heading in declared.items() if heading in raw.headings}
+    chosen = {name: _as_declared(raw, name, heading, columns[name]) for name, heading in there.items()}
+    return _with_chosen(guessed, raw, chosen, set(there.values())) if there else guessed
+
+
+def _as_declared(raw: RawTable, name: str, heading: str, column: Column) -> Guess:
+    """The column of a channel as [columns] of a project reads it."""
+    channel, why = BY_NAME[name], "as [columns] of tyre.toml says"
+    guess = Guess(channel, heading)
+    if channel.kind == "number":
+        guess = FoundChannel(channel, heading, raw.unit(heading), numbers(raw.column(heading))).guess(None)
+    return guess._replace(
+        unit=column.unit or "", scale=column.scale, against=column.against, over=column.over, why=why
+    )
+
+
+def _guessed(
+    raw: RawTable, unloaded_radius: float | None, named: Mapping[str, str], given: Collection[str]
+) -> Guesses:
+    """The channels by what laboratories call them, and remarks; see :func:`guesses`."""
     raw, of_rest = _rolling(raw)
     named = {name: heading for name, heading in named.items() if heading in raw.headings}
     columns = {
@@ -92,13 +121,14 @@ def guesses(
     remarks = [*of_rest, *of_axes, *left_out.values(), *of_units, *_unknown_units(raw, found)]
     found |= _labels(raw, named)
     for name in [name for name in by_unit if name in found]:
-        found[name] = found[name]._replace(why="taken by its unit, see above")
-        remarks.append(taken_for(by_unit[name]))
+        found[name] = found[name]._replace(why="taken by its unit")
     if rolls_back and "V_mps" in found:
         found["V_mps"] = found["V_mps"].reversed("the speed is negative in the file")
     if why := _of_finished_points(columns, found):
         time = found.pop("time_s")
         found["t_s"] = time._replace(channel=BY_NAME["t_s"], why=why)
+    taken_by_unit = {column.heading for column in by_unit.values()}
+    remarks += [taken_for(guess) for guess in found.values() if guess.heading in taken_by_unit]
     slip = slip_definition(slips, columns, lambda name: found[name].unit_of_readings)
     remarks += slip.remarks
     if slip.guess is not None:
@@ -110,25 +140,24 @@ def guesses(
     return Guesses(ordered, tuple(remarks))
 
 
-def _asked(raw: RawTable, found: Mapping[str, Guess]) -> list[str]:
-    """Questions about channels that a file may have, the load in its names, and its time."""
-    asked = questions(raw, found, {guess.heading for guess in found.values()})
+def _asked(raw: RawTable, found: Mapping[str, Guess], answered: Collection[str] = ()) -> list[Remark]:
+    """Questions about channels that a file may have, the load in its names, and its time; not about ``answered`` headings."""
+    asked = questions(raw, found, {guess.heading for guess in found.values()} | set(answered))
     load = found.get("Fz_N")
     if FROM_NAMES in raw.about and load is not None and not load.stated:
         unit = load.unit_of_readings
-        asked.append(
-            f"the load is taken {raw.about[FROM_NAMES]}, in {unit}: is it in {unit}? If not, write "
-            f'Fz_N = {{ column = "{load.heading}", unit = "lbf" }} under [columns], with the true unit'
-        )
+        remedy = f'Fz_N = {{ column = "{load.heading}", unit = "lbf" }} under [columns], with the true unit'
+        said = f"the load is taken {raw.about[FROM_NAMES]}, in {unit}: is it in {unit}?"
+        asked.append(Remark(said, f" If not, write {remedy}"))
     if not found.keys() & {"time_s", "t_s"}:
-        asked.append(
-            "no time: each row is treated as a finished point; if rows are samples of a recording, name its time under "
-            '[columns], for example time_s = "..."'
+        remedy = (
+            'if rows are samples of a recording, name its time under [columns], for example time_s = "..."'
         )
+        asked.append(Remark("no time: each row is treated as a finished point", f"; {remedy}"))
     return asked
 
 
-def _rolling(raw: RawTable) -> tuple[RawTable, list[str]]:
+def _rolling(raw: RawTable) -> tuple[RawTable, list[Remark]]:
     """The rows of a recording at which the wheel rolls, and a remark about the others."""
     speeds = candidates(raw, BY_NAME["V_mps"])
     if not speeds or not candidates(raw, BY_NAME["time_s"]):
@@ -136,7 +165,7 @@ def _rolling(raw: RawTable) -> tuple[RawTable, list[str]]:
     rests = standing(speeds[0].values)
     count = int(np.sum(rests))
     return (
-        (raw.of_rows(~rests), [f"left out at standstill: {count} of {counted(len(raw), 'row')}"])
+        (raw.of_rows(~rests), [Remark(f"left out at standstill: {count} of {counted(len(raw), 'row')}")])
         if count
         else (raw, [])
     )
@@ -154,14 +183,24 @@ def corrected(guessed: Guesses, raw: RawTable, choices: Collection[ColumnChoice]
             column = FoundChannel(channel, choice.heading, stated, numbers(raw.column(choice.heading)))
             guess = column.guess(Choice(choice.unit, "as chosen"))
             chosen[channel.name] = guess._replace(assumed=False, scale=-1.0 if choice.minus else 1.0)
+    return _with_chosen(guessed, raw, chosen, touched)
+
+
+def _with_chosen(
+    guessed: Guesses, raw: RawTable, chosen: Mapping[str, Guess], touched: Collection[str]
+) -> Guesses:
+    """The guesses with chosen columns in place of those of the ``touched`` headings; what that answers is not asked."""
     kept = {name: guess for name, guess in guessed.found.items() if guess.heading not in touched}
-    found = kept | chosen
-    words = touched | chosen.keys()
-    remarks = tuple(one for one in guessed.remarks if not words & set(re.split(r"[\s,:;()\"]+", one)))
-    return Guesses({c.name: found[c.name] for c in SWEEP_CHANNELS if c.name in found}, remarks)
+    found = {**kept, **chosen}
+    ordered = {c.name: found[c.name] for c in SWEEP_CHANNELS if c.name in found}
+    words = "|".join(map(re.escape, {*touched, *chosen}))
+    about = re.compile(rf"(?<![\w\[])(?:{words})(?![\w\]])")
+    asked = _asked(raw, guessed.found)
+    doubts = [one for one in guessed.remarks if one not in asked and not about.search(one.said)]
+    return Guesses(ordered, (*doubts, *_asked(raw, ordered, touched)))
 
 
-def _in_one_frame(columns: dict[str, FoundChannel]) -> tuple[dict[str, FoundChannel], list[str]]:
+def _in_one_frame(columns: dict[str, FoundChannel]) -> tuple[dict[str, FoundChannel], list[Remark]]:
     """The columns, and remarks on their axes by TYDEX's letters.
 
     A moment is dropped if its axes differ from those of the decisive moment (Mz, else My, else Mx).
@@ -170,15 +209,15 @@ def _in_one_frame(columns: dict[str, FoundChannel]) -> tuple[dict[str, FoundChan
     of_moments = [letters[name] for name in reversed(MOMENTS) if name in letters]
     odd = [name for name in MOMENTS if name in letters and letters[name] != of_moments[0]]
     remarks = [
-        f"{columns[name].heading} is left out: it is in other axes than the other moments" for name in odd
+        Remark(f"{columns[name].heading} is left out: it is in other axes than the other moments")
+        for name in odd
     ]
     kept = {name: column for name, column in columns.items() if name not in odd}
     for letter, what in ABOUT_LETTERS.items():
         named = [kept[name].heading for name in letters if name in kept and letters[name] == letter]
         if named:
-            remarks.append(
-                f"{', '.join(named)}: {what}, as TYDEX names it; converted to the contact frame and point"
-            )
+            said = f"{', '.join(named)}: {what}, as TYDEX names it; converted to the contact frame and point"
+            remarks.append(Remark(said))
     return kept, remarks
 
 
@@ -229,11 +268,13 @@ def _column(raw: RawTable, channel: Channel, heading: str) -> FoundChannel | Non
     return FoundChannel.of(raw, channel, heading, _unit_within(heading, channel))
 
 
-def _unknown_units(raw: RawTable, found: Mapping[str, Guess]) -> list[str]:
+def _unknown_units(raw: RawTable, found: Mapping[str, Guess]) -> list[Remark]:
     """Remarks on columns whose stated unit is unknown."""
     return [
-        f'the unit "{stated}" of {guess.heading} is not known, so it is taken as {guess.unit_of_readings}; if it is another one, '
-        f"correct it under [columns]"
+        Remark(
+            f'the unit "{stated}" of {guess.heading} is not known, so it is taken as {guess.unit_of_readings}',
+            "; if it is another one, correct it under [columns]",
+        )
         for guess in found.values()
         if (stated := raw.unit(guess.heading)) and not is_unit(stated)
     ]

@@ -12,11 +12,12 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.as_json import keys
+from mffit.config.models import Column
 from mffit.errors import InputError, meant
 from mffit.points.clock import spread
 from mffit.points.steady import gaps
 from mffit.recordings.by_unit import KINDS, in_unit_of, named_alike
-from mffit.recordings.guess import ColumnChoice, corrected, guesses
+from mffit.recordings.guess import NO_COLUMNS, ColumnChoice, corrected, guesses
 from mffit.recordings.tyre_constants import StatedByFile, stated_by
 from mffit.recordings.unstated import Guess
 from mffit.sheets import file_of
@@ -25,6 +26,14 @@ from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel, unknown_chan
 from mffit.sweeps.columns import numbers, with_missing_times
 from mffit.sweeps.raw_table import RawTable, with_values
 from mffit.sweeps.units import converted
+
+
+class UnrecognisedError(InputError):
+    """Required channels of a recording are not recognised; ``said`` is the sentence without what to do."""
+
+    def __init__(self, said: str, remedy: str, *, file: Path, line: int | None) -> None:
+        super().__init__(f"{said}; {remedy}", file=file, line=line)
+        self.said = said
 
 
 class SniffedRecording(NamedTuple):
@@ -105,8 +114,16 @@ def _as_value(heading: str) -> float | None:
 
 
 def recording_of(
-    path: Path, unloaded_radius: float | None, chosen: ChosenFile | None, headings: Mapping[str, str]
+    path: Path,
+    unloaded_radius: float | None,
+    chosen: ChosenFile | None,
+    headings: Mapping[str, str],
+    columns: Mapping[str, Column] = NO_COLUMNS,
 ) -> SniffedRecording:
+    """A recording with its user's choices; ``columns`` are [columns] of a project that reads it.
+
+    Raises UnrecognisedError if a required channel is missing, and InputError if a column cannot be what ``headings`` say.
+    """
     raw = formats.read(path)
     values = {
         name: value
@@ -117,12 +134,12 @@ def recording_of(
     tyre = stated_by(raw)
     if unloaded_radius is None and "unloaded_radius" in tyre:
         unloaded_radius = tyre["unloaded_radius"].value
-    guessed = guesses(raw, unloaded_radius=unloaded_radius, named=headings, given=values)
+    columns = {**columns, **{name: Column(value=value) for name, value in values.items()}}
+    guessed = guesses(raw, unloaded_radius=unloaded_radius, named=headings, columns=columns)
     found, remarks = guessed if chosen is None else corrected(guessed, raw, chosen.columns)
-    found |= {name: found[name]._replace(value=value) for name, value in values.items() if name in found}
     for name, heading in headings.items():
         if heading in raw.headings and (name not in found or found[name].heading != heading):
-            left_out = (remark for remark in remarks if heading in remark and "left out" in remark)
+            left_out = (str(one) for one in remarks if heading in one.said and "left out" in one.said)
             why = next(
                 left_out, f"it holds no numbers in a unit of {KINDS.get(BY_NAME[name].unit, 'this kind')}"
             )
@@ -131,11 +148,8 @@ def recording_of(
             )
     missing = [channel for channel in SWEEP_CHANNELS if channel.required and channel.name not in found]
     if missing:
-        raise InputError(
-            _unrecognised(missing, raw, {guess.heading for guess in found.values()}),
-            file=path,
-            line=raw.heading_line,
-        )
+        said = _unrecognised(missing, raw, {guess.heading for guess in found.values()})
+        raise UnrecognisedError(*said, file=path, line=raw.heading_line)
     return SniffedRecording(
         path=path,
         kind=formats.format_of(path).name,
@@ -145,23 +159,23 @@ def recording_of(
         guesses=found,
         about=dict(raw.about),
         **_clock(raw, found.get("time_s"))._asdict(),
-        remarks=remarks,
+        remarks=tuple(map(str, remarks)),
         backward="direction" not in found
         and (rolls_backward(path) or speed_is_negative(found) if chosen is None else chosen.backward),
         tyre=tyre,
     )
 
 
-def _unrecognised(missing: Sequence[Channel], raw: RawTable, taken: Collection[str]) -> str:
-    """The error sentence about required channels, with the columns that fit by their unit or name."""
+def _unrecognised(missing: Sequence[Channel], raw: RawTable, taken: Collection[str]) -> tuple[str, str]:
+    """Which required channels are missing, with the columns that fit by their unit or name, and what to do."""
     near = {channel.name: _near(channel, raw, taken) for channel in missing}
     fitting = [f"; {name} may be {' or '.join(headings)}" for name, headings in near.items() if headings]
     example = next((f"{name}={headings[0]}" for name, headings in near.items() if headings), None)
     settings = [channel.name for channel in missing if channel.name != "Fy_N"]
     value = f", or --column {settings[0]}=VALUE for one value in all rows" if settings else ""
     return (
-        f"no heading is known to be {' or '.join(near)} (the headings are {', '.join(raw.headings)}{''.join(fitting)}); give "
-        f"--column '{example or f'{missing[0].name}=HEADING'}'{value}, or name them under [columns] of a tyre.toml"
+        f"no heading is known to be {' or '.join(near)} (the headings are {', '.join(raw.headings)}{''.join(fitting)})",
+        f"give --column '{example or f'{missing[0].name}=HEADING'}'{value}, or name them under [columns] of a tyre.toml",
     )
 
 

@@ -18,7 +18,7 @@ from mffit.points.slip_zero import (
     unexplained_drive,
 )
 from mffit.recordings.by_unit import BRAKING
-from mffit.recordings.unstated import Choice, FoundChannel, Guess
+from mffit.recordings.unstated import Choice, FoundChannel, Guess, Remark
 from mffit.scatter import finite_median
 from mffit.sweeps.units import converted
 
@@ -29,7 +29,7 @@ class SlipColumn(NamedTuple):
     """The column to take as slip, None without any, with remarks."""
 
     guess: Guess | None
-    remarks: tuple[str, ...]
+    remarks: tuple[Remark, ...]
     force_reversed: str = ""  #: why Fx has the other sign in the file; "" if it has not
 
 
@@ -94,7 +94,7 @@ def slip_definition(
     live = [column for column in candidates if np.ptp(column.values[np.isfinite(column.values)]) > 0.0]
     for column in candidates:
         if why := _no_slip(column, live, file):
-            remarks.append(f"{column.heading} is left out: {why}")
+            remarks.append(Remark(f"{column.heading} is left out: {why}"))
         else:
             judged.append(_judged(column, file))
     known = [(guess, zero, why) for guess, zero, why in judged if zero is not None]
@@ -104,7 +104,9 @@ def slip_definition(
         return SlipColumn(judged[0][0], tuple(remarks))
     chosen, nearest, force_reversed = min(known, key=lambda one: one[1].largest)
     remarks += [
-        f"{chosen.heading} is taken, not {guess.heading}: in the latter Fx = 0 lies at slip {zero.said}"
+        Remark(
+            f"{chosen.heading} is taken, not {guess.heading}: in the latter Fx = 0 lies at slip {zero.said}"
+        )
         for guess, zero, _ in known
         if guess is not chosen
     ]
@@ -114,15 +116,16 @@ def slip_definition(
     return SlipColumn(chosen, tuple(remarks), force_reversed)
 
 
-def _only_positive(slip: Guess, force: FoundChannel) -> str:
+def _only_positive(slip: Guess, force: FoundChannel) -> Remark | None:
     """The question about a slip and a force that are both never negative, as absolute values of braking are."""
     limit = SMALLEST_SWEEP_OF_SLIP * slip.upper
     below = float(np.nanpercentile(force.values, CORE[0])) + SMALLEST_SWEEP_OF_SLIP * force.size
     if slip.scale < 0.0 or slip.lower < -limit or below < 0.0:
-        return ""
-    return (
+        return None
+    return Remark(
         f"{slip.heading} and {force.heading} are never negative: was the wheel driven? If it was braked, these are absolute "
-        "values: write scale = -1 for kappa and for Fx_N under [columns]"
+        "values",
+        ": write scale = -1 for kappa and for Fx_N under [columns]",
     )
 
 

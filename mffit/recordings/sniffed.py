@@ -13,12 +13,13 @@ from mffit import config as configuration
 from mffit.as_json import keys
 from mffit.config import Config
 from mffit.config.loading import STAND_IN, is_pattern, matches
+from mffit.config.models import Column
 from mffit.errors import InputError
 from mffit.points import levels
 from mffit.points.loading import Reading, read
 from mffit.points.points import Points
 from mffit.points.stretch import MOVE, StretchNote, stretch_table
-from mffit.recordings.guess import NOTHING_NAMED
+from mffit.recordings.guess import NO_COLUMNS, NOTHING_NAMED
 from mffit.recordings.recording import (
     NOTHING_CHOSEN,
     ChosenFile,
@@ -88,6 +89,7 @@ def sniff(
     unloaded_radius: float | None = None,
     chosen: Mapping[Path, ChosenFile] = NOTHING_CHOSEN,
     headings: Mapping[str, str] = NOTHING_NAMED,
+    columns: Mapping[str, Column] = NO_COLUMNS,
 ) -> Sniffed:
     """The content of recordings.
 
@@ -97,6 +99,7 @@ def sniff(
     unloaded_radius : [m], to check the speed of rotation; None if it is not known
     chosen : a user's choices for some of the files
     headings : headings that are not recognised, by channel, for all files that have them; or a number, for all rows
+    columns : [columns] of the project that reads the files
 
     Raises
     ------
@@ -114,7 +117,7 @@ def sniff(
     check_headings(headings, files)
 
     def of(file: Path) -> SniffedRecording:
-        return recording_of(file, unloaded_radius, chosen.get(file), headings)
+        return recording_of(file, unloaded_radius, chosen.get(file), headings, columns)
 
     recordings, refused = recordings_of(files, of, optional=set(files) - set(named))
     bad = bad_runs(summaries)

@@ -26,6 +26,16 @@ from mffit.sweeps.units import converted, is_unit, spelt
 from tir.constants import CREDIBLE_FRICTION
 
 
+class Remark(NamedTuple):
+    """What a user should know about columns of a recording."""
+
+    said: str
+    remedy: str = ""  #: what to write or which option to give; a page has fields for it instead
+
+    def __str__(self) -> str:
+        return self.said + self.remedy
+
+
 class Choice(NamedTuple):
     """The unit chosen for a column whose file states none."""
 
@@ -153,7 +163,7 @@ AMERICAN = frozenset(
 
 def choices(
     found: Mapping[str, FoundChannel], radius: float | None
-) -> tuple[dict[str, Choice], dict[str, str], list[str]]:
+) -> tuple[dict[str, Choice], dict[str, Remark], list[Remark]]:
     """Units of columns without a stated unit, reasons for leaving out optional columns, and remarks on doubtful units."""
     chosen: dict[str, Choice] = {}
     for kind in KINDS:
@@ -163,7 +173,7 @@ def choices(
     american, remarks = _american(_Known(found, chosen, radius))
     chosen |= american
     turning = _turning(_Known(found, chosen, radius))
-    left_out = {"omega_radps": turning} if isinstance(turning, str) else {}
+    left_out = {"omega_radps": Remark(turning)} if isinstance(turning, str) else {}
     if not isinstance(turning, str):
         chosen |= turning
     known = _Known(found, chosen, radius)
@@ -288,7 +298,7 @@ def _time_per_degree(time: np.ndarray, alpha_deg: np.ndarray) -> float | None:
     return 1.0 / rate if rate > 0.0 else None
 
 
-def _american(known: _Known) -> tuple[dict[str, Choice], list[str]]:
+def _american(known: _Known) -> tuple[dict[str, Choice], list[Remark]]:
     """American units for the columns without a stated unit, and a remark if these units are possible but not certain.
 
     They are certain if some column can only be in an American unit and no stated unit or pressure is in another one.
@@ -321,11 +331,12 @@ def _american(known: _Known) -> tuple[dict[str, Choice], list[str]]:
         return {}, []
     pairs = [f"{found[name].heading} ({known.unit(name)} or {unit})" for name, unit in doubtful.items()]
     name, unit = next(iter(doubtful.items()))
-    return {}, [
+    said = (
         f"{found[hint].heading} is in {known.unit(hint)}, so columns without a stated unit may be in American units, too: "
-        f"{', '.join(pairs)}; if they are, write the unit under [columns], for example {name} = "
-        f'{{ column = "{found[name].heading}", unit = "{unit}" }}'
-    ]
+        f"{', '.join(pairs)}"
+    )
+    example = f'{name} = {{ column = "{found[name].heading}", unit = "{unit}" }}'
+    return {}, [Remark(said, f"; if they are, write the unit under [columns], for example {example}")]
 
 
 def _lever_arm(known: _Known) -> float:
@@ -414,25 +425,25 @@ def _rolling_radii(
     return np.percentile(V[seen] / omega[seen], [low, 50.0, high]).tolist() if np.any(seen) else []
 
 
-def _implausible(name: str, known: _Known) -> str:
-    """The reason to leave out an optional column: readings outside the plausible range; "" if they are inside."""
+def _implausible(name: str, known: _Known) -> Remark | None:
+    """The reason to leave out an optional column: readings outside the plausible range; None if they are inside."""
     column, channel = known.found[name], known.found[name].channel
     if channel.required or name == "time_s":
-        return ""
+        return None
     unit = known.unit(name)
     values = converted(column.values, unit, channel.unit)
     if not implausible(values, channel, may_have_gaps="time_s" in known.found):
-        return ""
+        return None
     left_out = f"{column.heading} ({column.range}) is left out"
-    remedy = f"if it is {channel.name}, write it with its true unit under [columns]"
+    remedy = f"; if it is {channel.name}, write it with its true unit under [columns]"
     possible = known._replace(radius=None).possible("m", column.middle) if name == "RL_m" else {}
     if len(possible) > 1 and not column.unit:
-        return f"{left_out}: it may be in {' or '.join(possible)}; {remedy}"
+        return Remark(f"{left_out}: it may be in {' or '.join(possible)}", remedy)
     limits = f"{channel.lower:g} to {channel.upper:g} {channel.unit}".rstrip()
-    return f"{left_out}: in {unit or 'plain numbers'} it is not within {limits}; {remedy}"
+    return Remark(f"{left_out}: in {unit or 'plain numbers'} it is not within {limits}", remedy)
 
 
-def _hot(found: Mapping[str, FoundChannel]) -> list[str]:
+def _hot(found: Mapping[str, FoundChannel]) -> list[Remark]:
     """A remark if a temperature stated in degC is implausible for a tyre but plausible in degF."""
     column = found.get("T_degC")
     if column is None or not column.unit or spelt(column.unit) != "degC":
@@ -440,6 +451,8 @@ def _hot(found: Mapping[str, FoundChannel]) -> list[str]:
     if list(_Known(found, {}, None).possible("degC", column.middle)) != ["degF"]:
         return []
     return [
-        f"{column.heading} ({column.range}) is stated in {column.unit}, but no tread stays as hot: if it is in degF, write "
-        f'T_degC = {{ column = "{column.heading}", unit = "degF" }} under [columns]'
+        Remark(
+            f"{column.heading} ({column.range}) is stated in {column.unit}, but no tread stays as hot",
+            f': if it is in degF, write T_degC = {{ column = "{column.heading}", unit = "degF" }} under [columns]',
+        )
     ]

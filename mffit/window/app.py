@@ -190,6 +190,7 @@ def window_app(
         "state": lambda: opened.session.state(),
     }
     actions: dict[str, Callable[[dict[str, Any]], Any]] = {
+        "recognised": lambda content: opened.of_folder("recognised", content),
         "check": lambda content: opened.of_folder("check", content),
         "make": opened.make,
         "add": opened.add,

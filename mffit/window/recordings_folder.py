@@ -11,14 +11,21 @@ import numpy as np
 from mffit import config
 from mffit.config import Config
 from mffit.config.loading import STAND_IN, checked
+from mffit.config.models import Column
 from mffit.errors import InputError, shortened
 from mffit.output import digest, new_files
 from mffit.pipeline.intake import STRETCHES, project_of, written_project
 from mffit.points.loading import read
 from mffit.recordings.disc import DiscPath, disc_signs, files_of_folder
-from mffit.recordings.guess import ColumnChoice, guesses
+from mffit.recordings.guess import NO_COLUMNS, ColumnChoice, corrected, guesses
 from mffit.recordings.project_file import Stated, relative, slug, sweeps_text, tyre_found
-from mffit.recordings.recording import ChosenFile, rolls_backward
+from mffit.recordings.recording import (
+    ChosenFile,
+    SniffedRecording,
+    UnrecognisedError,
+    rolls_backward,
+    speed_is_negative,
+)
 from mffit.recordings.sniffed import Sniffed, axes_of, sniff
 from mffit.recordings.summary import SummaryRow, apart, bad_runs, two_specimens
 from mffit.recordings.unstated import Guess
@@ -75,33 +82,71 @@ class RecordingsFolder:
     @formats.reading_once()
     def table(self) -> dict[str, Any]:
         """What is recognised: files in groups of equal headings, channels to choose from, and what else the files say."""
-        files, summaries, links = self._parted()
-        groups, problems = _groups(files)
-        readable = {file["name"] for group in groups for file in group["files"]}
-        problems += [
+        files, _, links = self._parted()
+        groups, unreadable = _groups(files, self._columns)
+        unreadable += [
             str(InputError("is a link to a file elsewhere and not read; copy the file here", file=path))
             for path in links
         ]
-        found = None
-        try:
-            found = sniff([path for path in files if path.name in readable]) if readable else None
-        except InputError as error:
-            problems.append(str(error))
-        problems += [f"{run.recording.name} is left out: {run.why}" for run in bad_runs(summaries)]
-        problems += filter(None, [two_specimens(summaries)])
-        known = tyre_found(found, self.folder) if found else Stated(name=slug(self.folder))
         return {
             "folder": self.folder.name,
             "channels": [
                 {"name": c.name, "about": c.description, "required": c.required} for c in SWEEP_CHANNELS
             ],
             "groups": groups,
+            "unreadable": unreadable,
+            "seen": digest(self.project) if self.project else "",
+            **self.recognised({"groups": groups}),
+        }
+
+    @formats.reading_once()
+    def recognised(self, choice: Mapping[str, Any]) -> dict[str, Any]:
+        """What the files that are used say of tyre and rig, with the columns as chosen; ``known`` is False if they say nothing.
+
+        ``problems`` are those of these files, ``remarks`` those of each group that the choice leaves.
+        """
+        with _complete():
+            chosen = self._chosen_files(choice)
+            remarks = [self._remarks(group, chosen) for group in choice["groups"]]
+        summaries = [row for row in self._parted()[1] if row.recording in chosen]
+        problems, found = [], None
+        try:
+            found = self._sniffed(chosen) if chosen else None
+        except UnrecognisedError as error:
+            cure = "choose its columns below, or take its tick away"
+            problems.append(str(InputError(f"{error.said}: {cure}", file=error.file, line=error.line)))
+        except InputError as error:
+            problems.append(str(error))
+        problems += [f"{run.recording.name} is left out: {run.why}" for run in bad_runs(summaries)]
+        problems += filter(None, [two_specimens(summaries)])
+        known = tyre_found(found, self.folder) if found else Stated(name=slug(self.folder))
+        return {
+            "known": found is not None,
             "problems": problems,
+            "remarks": remarks,
             "tyre": {key: value for key, value in known._asdict().items() if value},
             "axes": list(found.axes) if found else [],
             "disc": disc_signs(found) if found else [],
-            "seen": digest(self.project) if self.project else "",
         }
+
+    @property
+    def _columns(self) -> Mapping[str, Column]:
+        """[columns] of the project, which are read in every recording."""
+        return NO_COLUMNS if self.project is None else config.load(self.project).columns
+
+    def _sniffed(self, chosen: Mapping[Path, ChosenFile], radius: float | None = None) -> Sniffed:
+        """What the chosen files hold; the unloaded radius [m], if known, checks the speed of rotation."""
+        return sniff(sorted(chosen), unloaded_radius=radius, chosen=chosen, columns=self._columns)
+
+    def _remarks(self, group: Mapping[str, Any], chosen: Mapping[Path, ChosenFile]) -> list[str]:
+        """What the columns of a group leave to ask; nothing if none of its files is used."""
+        names = {file["name"] for file in group["files"]}
+        path = next((path for path in chosen if path.name in names), None)
+        if path is None:
+            return []
+        raw = formats.read(path)
+        guessed = corrected(guesses(raw, columns=self._columns), raw, chosen[path].columns)
+        return [remark.said for remark in guessed.remarks]
 
     @formats.reading_once()
     def check(self, choice: Mapping[str, Any]) -> dict[str, Any]:
@@ -149,7 +194,9 @@ class RecordingsFolder:
         project = config.load(self.project)
         with _complete():
             chosen = self._chosen_files(choice)
-        found = sniff(sorted(chosen), unloaded_radius=project.tyre.unloaded_radius, chosen=chosen)
+        found = self._sniffed(chosen, project.tyre.unloaded_radius)
+        for recording in found.recordings:
+            _check_declared(recording, project.columns)
         bad = [
             {"file": relative(run.recording, self.folder), "lines": run.lines, "why": run.why}
             for run in found.bad_runs
@@ -170,31 +217,38 @@ class RecordingsFolder:
         with _complete():
             chosen = self._chosen_files(choice)
             stated = self._stated(choice["tyre"], choice["rig"], [path.name for path in chosen])
-        found = sniff(sorted(chosen), unloaded_radius=stated.unloaded_radius, chosen=chosen)
+        found = self._sniffed(chosen, stated.unloaded_radius)
+        signs = [] if stated.belt or stated.disc else disc_signs(found)
+        if signs:
+            raise InputError(
+                f"these look like recordings of a disc ({'; '.join(signs)}): choose disc or belt"
+            )
         return project_of(found, self.folder, stated)
 
     def _chosen_files(self, choice: Mapping[str, Any]) -> dict[Path, ChosenFile]:
         """The files that are used, with the user's statements; only files of this folder."""
-        known = {path.name: path for path in self._parted()[0]}
+        known, columns = {path.name: path for path in self._parted()[0]}, self._columns
         return {
-            known[file["name"]]: _chosen(known[file["name"]], group["columns"], bool(file.get("backward")))
+            (path := known[file["name"]]): _chosen(
+                path, group["columns"], bool(file.get("backward")), columns
+            )
             for group in choice["groups"]
             for file in group["files"]
             if file["name"] in known and file.get("used", True)
         }
 
     def _stated(self, tyre: Mapping[str, Any], rig: Mapping[str, Any], files: Sequence[str]) -> Stated:
-        """The user's statements about tyre and rig, checked like a ``tyre.toml``."""
+        """The user's statements about tyre and rig, checked like a ``tyre.toml``; what nobody chose is not among them."""
         given, of_rig = ({k: v for k, v in table.items() if v not in (None, "")} for table in (tyre, rig))
-        if of_rig.get("type") == "flat-track":
+        of_rig = {"type": "flat-track"} | of_rig
+        on_disc, belt = of_rig["type"] != "flat-track", rig.get("type") == "flat-track"
+        if not on_disc:
             of_rig = {k: v for k, v in of_rig.items() if not k.startswith("path")}
         open_yet = {"name": "t", "nominal_pressure": STAND_IN["nominal_pressure"]}
         content = {"tyre": open_yet | given, "rig": of_rig, "sweep": [{"file": name} for name in files]}
         checked(content, path=None, folder=self.folder, lines={})
-        disc = None
-        if of_rig.get("type") != "flat-track":
-            disc = DiscPath(float(of_rig["path_radius"]), str(of_rig.get("path_centre", "left")))
-        return Stated(**given, axes=of_rig.get("axes"), disc=disc, belt=disc is None)
+        disc = DiscPath(float(of_rig["path_radius"]), str(of_rig["path_centre"])) if on_disc else None
+        return Stated(**given, axes=of_rig.get("axes"), disc=disc, belt=belt)
 
 
 @contextmanager
@@ -206,20 +260,33 @@ def _complete() -> Iterator[None]:
         raise InputError("the choice is incomplete: tyre, rig and groups are needed") from None
 
 
-def _groups(files: Sequence[Path]) -> tuple[list[dict[str, Any]], list[str]]:
-    """Files with equal headings and units, each with the guessed columns; and why the others cannot be read."""
+def _check_declared(recording: SniffedRecording, columns: Mapping[str, Column]) -> None:
+    """Refuse a column that is not used as [columns] of the project reads it, which no [[sweep]] can undo."""
+    for name, column in columns.items():
+        heading = column.column or name
+        if column.value is None and heading in recording.headings and name not in recording.guesses:
+            raise InputError(
+                f'[columns] of the project reads "{heading}" as {name} in every file: choose that, or remove it there',
+                file=recording.path,
+            )
+
+
+def _groups(files: Sequence[Path], columns: Mapping[str, Column]) -> tuple[list[dict[str, Any]], list[str]]:
+    """Files with equal headings and units, each with the columns as guessed or as [columns] of the project; and why the others
+    cannot be read.
+    """
     groups: dict[tuple[Any, ...], dict[str, Any]] = {}
     problems = []
     for path in files:
         try:
             raw = formats.read(path)
-            found, remarks = guesses(raw)
+            found = guesses(raw, columns=columns).found
         except InputError as error:
             problems.append(str(error))
             continue
         guessed = {guess.heading: guess for guess in found.values()}
         key = raw.headings, raw.units, tuple((*_offered(one, guessed),) for one in raw.headings)
-        columns = [
+        offered = [
             {
                 **_offered(heading, guessed)._asdict(),
                 "stated": raw.unit(heading),
@@ -228,12 +295,13 @@ def _groups(files: Sequence[Path]) -> tuple[list[dict[str, Any]], list[str]]:
             }
             for heading in raw.headings
         ]
-        group = groups.setdefault(key, {"files": [], "columns": columns, "remarks": list(remarks)})
+        group = groups.setdefault(key, {"files": [], "columns": offered})
         for column in group["columns"]:
             readings = numbers(raw.column(column["heading"]))
             seen = np.append(readings[np.isfinite(readings)], column["range"] or [])
             column["range"] = [float(seen.min()), float(seen.max())] if len(seen) else None
-        group["files"].append({"name": path.name, "rows": len(raw), "backward": rolls_backward(path)})
+        back = "direction" not in found and (rolls_backward(path) or speed_is_negative(found))
+        group["files"].append({"name": path.name, "rows": len(raw), "backward": back})
     return list(groups.values()), problems
 
 
@@ -245,10 +313,12 @@ def _offered(heading: str, guessed: Mapping[str, Guess]) -> ColumnChoice:
     return ColumnChoice(heading, guess.channel.name, guess.unit, guess.scale < 0.0)
 
 
-def _chosen(path: Path, rows: Sequence[Mapping[str, Any]], backward: bool) -> ChosenFile:
-    """What the user states about a recording, as far as it differs from the recognised values."""
+def _chosen(
+    path: Path, rows: Sequence[Mapping[str, Any]], backward: bool, columns: Mapping[str, Column]
+) -> ChosenFile:
+    """What the user states about a recording, as far as it differs from what is recognised or in [columns] of the project."""
     raw = formats.read(path)
-    guessed = {guess.heading: guess for guess in guesses(raw).found.values()}
+    guessed = {guess.heading: guess for guess in guesses(raw, columns=columns).found.values()}
     chosen, taken = [], set()
     for row in rows:
         one = _choice(row)

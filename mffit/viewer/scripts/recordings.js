@@ -35,6 +35,8 @@ const number = name => {
   return Number.isFinite(x) ? x : null;
 };
 const text = name => document.querySelector(`[name=${name}]`).value;
+const touched = new Set();  // fields of tyre and rig that were filled in by hand
+const chosen = name => touched.has(name) ? text(name) : "";  // what the page proposes is nobody's choice
 const does = byId("choice").dataset.does, adds = does === "add";
 function choice() {
   return adds ? {groups: table.groups, seen: table.seen} : {
@@ -42,7 +44,7 @@ function choice() {
       nominal_load: number("nominal_load"), nominal_pressure: number("nominal_pressure"),
       nominal_speed: number("nominal_speed"), width: number("width"), rim_radius: number("rim_radius"),
       side: text("side")},
-    rig: {type: text("type"), axes: text("axes"), path_radius: number("path_radius"),
+    rig: {type: chosen("type"), axes: chosen("axes"), path_radius: number("path_radius"),
       path_centre: text("path_centre")},
     groups: table.groups,
   };
@@ -54,9 +56,7 @@ function list(sentences) {
 const offer = takesRecordings(say, async (refusals, count) => {
   say("reading the recordings");
   await load();
-  if (!refusals.length) return;
-  say(`${refusals.length} of ${count} files were not stored; see below.`, true);
-  list([...refusals, ...table.problems]);
+  if (refusals.length) say(`Not stored, ${refusals.length} of ${count}: ${refusals.join("; ")}`, true);
 });
 for (const id of ["add-files", "add-folder"]) byId(id).addEventListener("change",
   event => { offer([...event.target.files]); event.target.value = ""; });
@@ -77,62 +77,76 @@ function carriedOver(before, after) {
   }
   return after;
 }
-const touched = new Set();  // fields that were filled in by hand
-byId("choice").addEventListener("input", event => touched.add(event.target.name));
+byId("choice").addEventListener("input", event => { touched.add(event.target.name); byId("found").hidden = true; });
 async function load() {
   const found = await read("recordings");
   if (!found || found.error) return say(found ? found.error : ENDED, true);
-  const typed = table && table.groups.length ? choice() : null;
-  table = table ? carriedOver(table, found) : found;
+  const before = table;
+  table = before ? carriedOver(before, found) : found;
+  byId("choice").hidden = !table.groups.length;
+  byId("groups").replaceChildren(...table.groups.map(group));
+  if (!adds && !byId("tyre").childElementCount) tyreAndRig(byId("tyre"), byId("rig"));
   show();
-  if (!typed || adds) return;
-  for (const [name, x] of Object.entries({...typed.tyre, ...typed.rig})) {
-    if (x !== null && touched.has(name)) document.querySelector(`[name=${name}]`).value = x;
-  }
-  document.querySelector("[name=type]").dispatchEvent(new Event("change"));
+  if (before && table.groups.length) await recognise();
 }
+let asking = 0;
+// What the files that are ticked say, with the columns as they are chosen now.
+async function recognise() {
+  const asks = ++asking, found = await read("recognised", sent(choice()));
+  if (asks !== asking) return;
+  if (!found || found.error) return say(found ? found.error : ENDED, true);
+  Object.assign(table, found);
+  show();
+}
+byId("groups").addEventListener("change", recognise);
 
 function show() {
-  const tyre = byId("tyre"), rig = byId("rig"), disc = table.disc.length > 0;
-  tyre.replaceChildren();
-  rig.replaceChildren();
+  const problems = [...table.unreadable, ...table.problems];
   byId("found").hidden = true;
-  byId("choice").hidden = !table.groups.length;
-  list(table.problems);
-  if (!table.groups.length) return say(table.problems.length ? "None of the recordings here can be read; see below."
-    : adds ? "Every recording of this folder is in tyre.toml." : "No recordings here yet.", table.problems.length > 0);
-  if (!adds) tyreAndRig(tyre, rig, disc);
-  byId("groups").replaceChildren(...table.groups.map(group));
-  const first = disc && !adds ? `These look like recordings of a disc: ${table.disc.join("; ")}.` : "";
-  say(first || (table.problems.length ? "Something was not recognised; see below." : ""),
-    !first && table.problems.length > 0);
+  list(problems);
+  if (!table.groups.length) return say(problems.length ? "None of the recordings here can be read; see below."
+    : adds ? "Every recording of this folder is in tyre.toml." : "No recordings here yet.", problems.length > 0);
+  for (const [k, home] of document.querySelectorAll(".remarks").entries())
+    home.replaceChildren(...(table.remarks[k] ?? []).map(remark => element("p", "sub", remark)));
+  if (!adds) propose();
+  if (!table.known) return say("These recordings do not say yet what rig and axes they are of; see below.", true);
+  const disc = table.disc.length && !adds ? `These look like recordings of a disc: ${table.disc.join("; ")}.` : "";
+  say(disc || (problems.length ? "Something was not recognised; see below." : ""), !disc && problems.length > 0);
 }
-function tyreAndRig(tyre, rig, disc) {
-  field(tyre, "name", "name", {value: table.tyre.name, required: true});
-  field(tyre, "size", "size", {value: table.tyre.size ?? "", placeholder: "optional"});
+// The fields that nobody filled in have what the recordings say; those of which they say nothing are empty.
+function propose() {
+  const {known, disc, axes, tyre} = table;
+  for (const option of document.querySelector("[name=axes]").options)
+    option.text = axes.includes(option.value) ? `${option.value} (agrees with the signs)` : option.value || "which axes?";
+  const said = {...tyre, type: known && !disc.length ? "flat-track" : "", axes: axes[0]};
+  for (const input of document.querySelectorAll("#tyre [name], #rig [name]"))
+    if (!touched.has(input.name) && input.name !== "side") input.value = said[input.name] ?? "";
+  document.querySelector("[name=type]").dispatchEvent(new Event("change"));
+}
+function tyreAndRig(tyre, rig) {
+  field(tyre, "name", "name", {required: true});
+  field(tyre, "size", "size", {placeholder: "optional"});
   const any = {type: "number", step: "any", required: true, min: 0};
   field(tyre, "unloaded radius [m]", "unloaded_radius", any);
   field(tyre, "nominal load [N]", "nominal_load", any);
-  field(tyre, "nominal pressure [kPa]", "nominal_pressure", {...any, value: table.tyre.nominal_pressure ?? ""});
+  field(tyre, "nominal pressure [kPa]", "nominal_pressure", any);
   const optional = {type: "number", step: "any", min: 0, placeholder: "optional"};
   for (const [word, name] of [["nominal speed [m/s]", "nominal_speed"], ["width [m]", "width"],
     ["rim radius [m]", "rim_radius"]])
-    field(tyre, word, name, {...optional, value: table.tyre[name] ?? ""});
+    field(tyre, word, name, optional);
   select(tyre, "side of the measured tyre", "side", ["left", "right", "symmetric"].map(x => [x, x]), "left");
   const type = select(rig, "rig", "type", [["", "disc or belt?"], ["flat-track", "belt: a straight path"],
-    ["rotating-disk", "disc: a curved path"]], disc ? "" : "flat-track");
-  type.required = true;
-  select(rig, "axes of the readings", "axes", ["iso", "sae",
-    "adapted-sae"].map(x => [x, table.axes.includes(x) ? `${x} (agrees with the signs)` : x]), table.axes[0] || "iso");
+    ["rotating-disk", "disc: a curved path"]], "");
+  const axes = select(rig, "axes of the readings", "axes", ["", "iso", "sae", "adapted-sae"].map(x => [x, x]), "");
   const radius = field(rig, "path radius [m]", "path_radius", {...optional, placeholder: ""});
-  const centre = select(rig, "disc centre, seen rolling forwards", "path_centre", ["left", "right"].map(x => [x, x]),
-    "left");
+  const centre = select(rig, "disc centre, seen rolling forwards", "path_centre", [["", "left or right?"],
+    ["left", "left"], ["right", "right"]], "");
   const curved = () => {
-    radius.required = type.value === "rotating-disk";
-    for (const one of [radius, centre]) one.parentNode.hidden = one.disabled = !radius.required;
+    const disc = type.value === "rotating-disk";
+    for (const one of [radius, centre]) { one.required = disc; one.parentNode.hidden = one.disabled = !disc; }
   };
+  type.required = axes.required = true;
   type.addEventListener("change", curved);
-  curved();
 }
 const checkbox = (checked, given) => element("input", "", "", {type: "checkbox", checked, ...given});
 function group(one) {
@@ -150,7 +164,7 @@ function group(one) {
     element("details", "", [element("summary", "", "files"), element("div", "files", files)],
       {open: names.length < 4}),
     element("div", "scroll", [element("table", "", [element("tbody", "", [head, ...one.columns.map(row)])])]),
-    ...one.remarks.map(remark => element("p", "sub", remark))]);
+    element("div", "remarks")]);
 }
 function row(column) {
   const names = ["", ...table.channels.map(one => one.name)];
@@ -174,6 +188,7 @@ function row(column) {
 byId("check").addEventListener("click", async () => {
   if (!byId("choice").reportValidity()) return;
   say("reading the recordings as chosen");
+  byId("found").hidden = true;
   const found = await post("check");
   if (!found) return;
   const said = [`${found.points} points`,

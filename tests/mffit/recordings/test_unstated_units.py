@@ -43,7 +43,8 @@ def guessed(units=None, radius=None, **other):
         path=Path("a.csv"),
         heading_line=1,
     )
-    return guesses(raw, unloaded_radius=radius)
+    found = guesses(raw, unloaded_radius=radius)
+    return found._replace(remarks=tuple(map(str, found.remarks)))
 
 
 def units(**other) -> dict[str, str]:

@@ -218,7 +218,7 @@ def test_a_link_to_a_file_elsewhere_is_not_read(folder, tmp_path):
     (tmp_path / "secret.csv").write_text("secret\n1\n", encoding="utf-8")
     (folder / "link.csv").symlink_to(tmp_path / "secret.csv")
     table = RecordingsFolder(folder).table()
-    assert "link.csv: is a link to a file elsewhere" in table["problems"][0]
+    assert "link.csv: is a link to a file elsewhere" in table["unreadable"][0]
     assert "secret" not in str(table)
 
 
@@ -228,7 +228,7 @@ def test_one_file_that_is_no_recording_leaves_the_others_recognised(folder, orig
     (folder / "notes.txt").write_text("hi\n", encoding="utf-8")
     table = RecordingsFolder(folder).table()
     assert table["axes"] == ["iso"]
-    assert "notes.txt" in table["problems"][0]
+    assert "notes.txt" in table["unreadable"][0]
 
 
 @pytest.fixture
