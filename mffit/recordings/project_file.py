@@ -110,7 +110,10 @@ def project_text(sniffed: Sniffed, folder: Path, stated: Stated = NOTHING_STATED
 def sweeps_text(sniffed: Sniffed, folder: Path, columns: Mapping[str, Column]) -> str:
     """The text of one [[sweep]] per recording, for a ``tyre.toml`` in ``folder`` with these [columns]."""
     own_names = {name: Column(column=name) for recording in sniffed.recordings for name in recording.guesses}
-    named = {name: one.model_copy(update={"column": one.column or name}) for name, one in columns.items()}
+    named = {
+        name: one if one.value is not None else one.model_copy(update={"column": one.column or name})
+        for name, one in columns.items()
+    }
     return _text(_sweeps(sniffed.recordings, folder, {**own_names, **named}, ()))
 
 

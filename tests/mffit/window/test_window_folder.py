@@ -394,3 +394,83 @@ class Endless:
 
     def __reduce__(self) -> Any:
         return time.sleep, (60.0,)
+
+
+def of_disc_beside_a_foreign_table(folder: Path) -> RecordingsFolder:
+    """Recordings of a disc, and a table of something else."""
+    for name in (
+        "sideslip_1400N.csv",
+        "camber_1400N.csv",
+        "zero_1400N_forward.csv",
+        "zero_1400N_backward.csv",
+    ):
+        (folder / name).write_bytes((DISC / name).read_bytes())
+    (folder / "costs.csv").write_text("month,costs\n1,10\n2,20\n", encoding="utf-8")
+    return RecordingsFolder(folder)
+
+
+def test_a_foreign_table_leaves_rig_and_axes_open_until_its_tick_is_taken_away(tmp_path):
+    found = of_disc_beside_a_foreign_table(tmp_path)
+    table = found.table()
+    assert (table["known"], table["axes"], table["disc"]) == (False, [], [])
+    assert "costs.csv:1: no heading is known to be" in table["problems"][0]
+    assert "take its tick away" in table["problems"][0]
+    (foreign,) = [group for group in table["groups"] if group["files"][0]["name"] == "costs.csv"]
+    foreign["files"][0]["used"] = False
+    seen = found.recognised({"groups": table["groups"]})
+    assert (seen["known"], seen["axes"][:1], seen["problems"]) == (True, ["iso"], [])
+    assert any("backward" in sign for sign in seen["disc"])
+
+
+def test_nobody_s_choice_makes_no_belt_of_a_disc_and_is_not_called_a_choice(tmp_path, original):
+    found = of_disc_beside_a_foreign_table(tmp_path)
+    (tmp_path / "costs.csv").unlink()
+    choice = {"tyre": TYRE, "rig": {"type": "", "axes": ""}, "groups": found.table()["groups"]}
+    for question in (found.make, found.check):
+        with pytest.raises(InputError, match=r"recordings of a disc \(.*\): choose disc or belt"):
+            question(choice)
+    (tmp_path / "belt").mkdir()
+    (tmp_path / "belt" / "a.csv").write_bytes((original.parent / "sideslip_1400.csv").read_bytes())
+    belt = RecordingsFolder(tmp_path / "belt")
+    text = belt.make(choice | {"groups": belt.table()["groups"]}).read_text(encoding="utf-8")
+    assert 'type = "flat-track"' in text
+    assert 'axes = "iso"  # from the slope' in text
+    assert "as chosen" not in text
+
+
+def test_what_the_choice_answers_is_asked_no_more(folder):
+    for path in folder.iterdir():
+        table = pd.read_csv(path)
+        table["u lat [N]"] = 20.0
+        table["Druck"] = 250.0
+        table.to_csv(path, index=False)
+    found = RecordingsFolder(folder)
+    table = found.table()
+    choice = corrected(table)
+    ((asked, *_),) = found.recognised(choice)["remarks"]
+    assert "u lat" in asked
+    assert "--column" not in str(table) + str(found.recognised(choice))
+    assert "[columns]" not in str(table)
+    next(row for row in table["groups"][0]["columns"] if "u lat" in row["heading"])["channel"] = "u_Fy_N"
+    assert not any("u lat" in one for one in found.recognised(choice)["remarks"][0])
+    assert "is it one of them" not in found.make(choice).read_text(encoding="utf-8")
+
+
+def test_a_recording_to_add_is_shown_as_columns_of_the_project_read_it(growing):
+    text = growing.read_text(encoding="utf-8")
+    declared = 'Fy_N = { column = "Kraft quer", unit = "kN", scale = -1 }\ngamma_deg = 0.0\n'
+    growing.write_text(f"{text}\n[columns]\n{declared}", encoding="utf-8")
+    table = pd.read_csv(growing.with_name("camber_900.csv"))
+    table.drop(columns="gamma_deg").to_csv(growing.with_name("camber_900.csv"), index=False)
+    found = RecordingsFolder(growing.parent, growing)
+    shown = found.table()
+    (group,) = shown["groups"]
+    (row,) = [row for row in group["columns"] if row["heading"] == "Kraft quer"]
+    assert (row["channel"], row["unit"], row["minus"]) == ("Fy_N", "kN", True)
+    assert (shown["known"], shown["problems"]) == (True, [])
+    added = found.added({"groups": shown["groups"]})
+    lines = [line for line in added["sweeps"].splitlines() if line and not line.startswith("#")]
+    assert lines == ["[[sweep]]", 'file = "camber_900.csv"']
+    row["channel"] = ""
+    with pytest.raises(InputError, match=r'\[columns\] of the project reads "Kraft quer" as Fy_N'):
+        found.added({"groups": shown["groups"]})
