@@ -412,7 +412,7 @@ class _Quadratic(NamedTuple):
                     break
                 held[np.argmax(np.where(inwards, slope**2 / np.diag(curvature), 0.0))] = False
                 continue
-            with np.errstate(divide="ignore", invalid="ignore"):
+            with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
                 room = np.where(
                     way == 0.0, math.inf, np.where(way > 0.0, self.high - move, self.low - move) / way
                 )
@@ -427,6 +427,7 @@ class _Quadratic(NamedTuple):
         return move
 
 
+@np.errstate(over="ignore", invalid="ignore")  # from a coefficient held at an absurd value, no step is finite
 def _lowest(slope: float, curvature: float, limits: np.ndarray, rise: np.ndarray) -> float:
     """The step length, from 0, at which half the sum of squares is minimal along a direction.
 

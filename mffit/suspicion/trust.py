@@ -321,14 +321,15 @@ def unexplained(fit: FinishedFit) -> Iterator[Facts]:
 )
 def held_against_data(fit: FinishedFit) -> Iterator[Facts]:
     """Misfit that is due to a value or bound set by hand or, where the noise is stated, to a bound of published tyres or a limit
-    of the curves, such as E <= 1; distrusted for such a limit.
+    of the curves, such as E <= 1; distrusted for such a limit, and for what is set by hand if most of the misfit is due to it.
     """
     stated = _noise_is_stated(fit)
     for held in fit.held:
-        name = held.name
+        name, asked = held.name, not held.physical
         certain = stated and held.sigma > CERTAIN_SIGMA and held.share > LEAST_PREDICTED_SHARE
         if held.by_hand:
             certain = held.sigma > constants.DOUBTFUL_SIGMA
+            asked = held.sigma <= CERTAIN_SIGMA or held.share <= 1.0 - held.share
             what = f"the readings contradict what [coefficients] sets for {name}"
             cure = f"the other coefficients take up the difference; check {name}, or free it"
         elif held.physical:
@@ -342,7 +343,7 @@ def held_against_data(fit: FinishedFit) -> Iterator[Facts]:
             cure = f"check what determines {name}, or widen its bounds with {bounds} under [coefficients]"
         if certain:
             facts = {"what": what, "sigma": held.sigma, "percent": 100.0 * held.share, "cure": cure}
-            yield facts | {"asked": held.by_hand or not held.physical}
+            yield facts | {"asked": asked}
 
 
 @of_model(

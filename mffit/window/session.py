@@ -204,6 +204,7 @@ class Session:
         self.fits = 0  #: finished fits
         self.readings: dict[str, Any] | None = None  #: for the page until the first fit ends
         self.last: RunOutcome | None = None  #: of the last run
+        self._ended_with: tuple[str, dict[Path, int]] = ("", {})  #: tyre.toml and recordings when it had ended
         self._seen: tuple[str | None, str, Config | None] = (None, "", None)
         self._fitted = ""  #: digest of the tyre.toml of the last fit
         self._run: Run | None = None
@@ -220,6 +221,7 @@ class Session:
             now = self.file.digest
             problem, config = self._read(now)
             self._look_for_recordings()
+            last = self.last if self._ended_with == (now, self._there()) else None
             return {
                 "digest": now,
                 "is_fitted": self._fitted == now and config is not None and self._is_of(config),
@@ -232,9 +234,7 @@ class Session:
                 "run": None
                 if self._run is None
                 else {"kind": self._run.kind, "sentence": self._run.sentence},
-                "last": None
-                if self.last is None
-                else {"state": self.last.state, "sentence": self.last.sentence},
+                "last": None if last is None else {"state": last.state, "sentence": last.sentence},
                 "pages": self._pages(config),
                 "news": self._unlisted_news(config),
             }
@@ -308,7 +308,7 @@ class Session:
             return
         run, self._run = self._run, None
         assert run.outcome is not None
-        self.last = run.outcome
+        self.last, self._ended_with = run.outcome, (self.file.digest, self._there())
         if run.outcome.data is not None:
             self.data = run.outcome.data | {"before": _before(self.data)}
             self.fits += 1
@@ -350,7 +350,7 @@ class Session:
                 "files": sorted(path.name for path in out.glob("*.tir")) if kind == "build" else [],
             }
             for kind, (title, place) in PAGES.items()
-            if kind != "compare" or has_base
+            if kind != "compare" or (has_base and (out / "result.json").is_file())
         ]
 
 

@@ -24,7 +24,8 @@ function showMisfit() {
     const line = body.rows[k] || body.insertRow(), now = misfits[name] ??= misfit(name),
       fit = fitMisfits[name] ??= misfit(name, fitOwn);
     if (!line.cells.length) for (let i = 0; i < 5; i++) line.insertCell().className = i ? "n" : "";
-    if (line.dataset.name !== name) line.cells[0].replaceChildren(symbol(quantity(name)), ` [${unit(name)}]`);
+    if (line.dataset.name !== name) line.cells[0].replaceChildren(symbol(quantity(name)), ` [${unit(name)}]${
+      project.channels[k].of_fit ? "" : ", beside the fit"}`);
     line.dataset.name = name;
     const size = rmse => written(shownIn(name, rmse));
     const before = project.before && name in project.before.rmse ? size(project.before.rmse[name]) : "";
@@ -36,6 +37,8 @@ function showMisfit() {
     line.cells[4].title = "root mean square of (model - reading) / u of the readings that state their uncertainty u";
   });
 }
+
+const byHand = {panels: false, colour: false};  // what nobody chose follows the points of the next fit
 
 const projectPart = {
   ...pointing, scene: sceneOf, still: drawStill, moving: drawMoving, above: drawAbove,
@@ -66,6 +69,7 @@ const projectPart = {
       list.onchange = () => {
         panel[axis] = list.value;
         panel.box = null;
+        byHand.panels = true;
         tellAxes();
         look(panel, null);
         remember();
@@ -75,14 +79,14 @@ const projectPart = {
     });
     tellAxes();
     caption.append(upwards, element("span", "on-screen", "over "), sideways, ...keys, key("×", "remove this picture",
-      () => { removePanel(panel); remember(); listCoefficients(); }, "small close"), title);
+      () => { byHand.panels = true; removePanel(panel); remember(); listCoefficients(); }, "small close"), title);
     panel.canvas.ariaLabel =
       "points and curves; arrow keys choose a point, with Shift several, Ctrl+A all; + and - zoom, 0 shows all";
   },
   csv: panel => csvOf(panel, label),
   kept() {
-    const {hidden, ranges, colour, reading, bands, fit} = state;
-    return {panels: panels.map(({x, y}) => ({x, y})), hidden, ranges, colour, reading, bands, fit, trial};
+    const {hidden, ranges, reading, bands, fit} = state, colour = byHand.colour ? state.colour : null;
+    return {panels: byHand.panels ? panels.map(({x, y}) => ({x, y})) : null, hidden, ranges, colour, reading, bands, fit, trial};
   },
 };
 
@@ -108,11 +112,13 @@ export async function showProject(data) {
   byId("content").hidden = false;
   const names = project.points.facets.filter(one => one.labels.length > 1);
   byId("colour").replaceChildren(
-    ...names.map(one => new Option(one.word, one.name, false, one.name === state.colour)));
+    ...names.map(one => new Option(one.word, one.name, false, byHand.colour && one.name === state.colour)));
   state.colour = byId("colour").value || project.points.facets[0].name;
   filter();
   listFacets();
-  if (!panels.length) for (const panel of (wanted.length ? wanted : defaultPanels())) addPanel(panel);
+  const proposed = wanted.length ? wanted : defaultPanels(), axes = all => all.map(({x, y}) => `${y} ${x}`).join();
+  if (!byHand.panels && axes(panels) !== axes(proposed)) [...panels].forEach(removePanel);
+  if (!panels.length) for (const panel of proposed) addPanel(panel);
   listCoefficients();
   const fit = project.channels.filter(one => one.of_fit).map(one =>
     `${one.name} ${written(shownIn(one.name, one.rmse))} ${quantity(one.name).unit}`).join(", ");
@@ -139,6 +145,8 @@ let wanted = [];  // pictures
 export async function beginProject(given) {
   const kept = recalled();
   wanted = Array.isArray(kept.panels) ? kept.panels : [];
+  byHand.panels = wanted.length > 0;
+  byHand.colour = typeof kept.colour === "string";
   for (const name of ["hidden", "ranges"]) if (kept[name] && typeof kept[name] === "object") state[name] = kept[name];
   for (const name of ["colour", "fit"]) if (typeof kept[name] === "string") state[name] = kept[name];
   if (["curve", "felt", "read"].includes(kept.reading)) state.reading = kept.reading;
@@ -153,8 +161,8 @@ export async function beginProject(given) {
   byId("reset").addEventListener("click", () => tryOut({}));
   for (const [id, take] of [["bands", box => { state.bands = box.checked; }],
     ["reading", list => { state.reading = list.value; }],
-    ["colour", list => { state.colour = list.value; recolour(); listFacets(); showFacets(); }],
-    ["add", () => { addPanel(defaultPanels()[0]); listCoefficients(); }]]) {
+    ["colour", list => { state.colour = list.value; byHand.colour = true; recolour(); listFacets(); showFacets(); }],
+    ["add", () => { byHand.panels = true; addPanel(defaultPanels()[0]); listCoefficients(); }]]) {
     byId(id).addEventListener(id === "add" ? "click" : "change",
       event => { take(event.target); remember(); update(); });
   }

@@ -51,9 +51,11 @@ hooks.extendRow = (row, keys, box) => {
   const held = entry => typeof entry === "number" || entry === "base";
   const now = () => Number((row.name in trial ? trial[row.name] : row.value).toPrecision(9));
   const problem = element("p", "problem", "", {role: "alert"});
+  let refusedAt = "";  // tyre.toml that a change was meant for
   const refused = found => {
-    const field = (found.key || "").startsWith(`coefficients.${row.name}.`) ? found.key.split(".").pop() : "";
-    problem.textContent = found.key ? `${field || row.name}: ${found.sentence}` : found.error;
+    const [table, name, field = ""] = (found.key || "").split("."), own = table === "coefficients" && name === row.name;
+    problem.textContent = own ? `${field || name}: ${found.sentence}` : found.error;
+    refusedAt = live.digest;
     for (const input of box.querySelectorAll(".limits input")) input.setAttribute("aria-invalid",
       input.name === field);
   };
@@ -82,6 +84,7 @@ hooks.extendRow = (row, keys, box) => {
   if (row.name in drafts) form();
   keys.refresh = () => {
     const entry = entryOf(row.name);
+    if (live.digest !== refusedAt) problem.textContent = "";
     free.hidden = entry === null;
     limits.hidden = !row.may_be_free;
     start.hidden = !row.may_be_free || !["fitted", "regularised"].includes(row.status) || held(entry);

@@ -251,6 +251,17 @@ def test_a_limit_counts_if_the_readings_contradict_it_and_it_matters(sigma, shar
     assert any("PCY1 = { min = ..., max = ... }" in said for said in of_tyres.doubts) == counts
 
 
+@pytest.mark.parametrize(
+    ("sigma", "share", "counts"), [(4.9, 0.9, False), (26.0, 0.49, False), (26.0, 0.51, True)]
+)
+def test_what_is_set_by_hand_counts_if_most_of_the_misfit_is_due_to_it(sigma, share, counts):
+    """Stated noise or not: no model error has to be found for it."""
+    for u in (U, np.nan):
+        found = judged(noise(), u=u, held=(HeldNumber("PDY1", sigma, share, by_hand=True),))
+        assert found.trusted != counts
+        assert any("[coefficients] sets for PDY1" in said for said in (*found.reasons, *found.doubts))
+
+
 def test_what_check_refuses_is_a_reason():
     (said,) = judged(noise(), broken=("FZMIN 500 is not below FZMAX 400",)).reasons
     assert "FZMIN 500" in said
