@@ -27,6 +27,7 @@ from mffit.constants import (
     FEWEST,
     LEAST_PREDICTED_SHARE,
     MISFIT_AT_NOISE,
+    MOST,
     NAMED_IN_SENTENCE,
     ODD_SWEEP_RATIO,
 )
@@ -329,7 +330,7 @@ def held_against_data(fit: FinishedFit) -> Iterator[Facts]:
         certain = stated and held.sigma > CERTAIN_SIGMA and held.share > LEAST_PREDICTED_SHARE
         if held.by_hand:
             certain = held.sigma > constants.DOUBTFUL_SIGMA
-            asked = held.sigma <= CERTAIN_SIGMA or held.share <= 1.0 - held.share
+            asked = held.sigma <= CERTAIN_SIGMA or held.share <= MOST
             what = f"the readings contradict what [coefficients] sets for {name}"
             cure = f"the other coefficients take up the difference; check {name}, or free it"
         elif held.physical:
