@@ -116,7 +116,7 @@ class PredictedForce(ReadOnlyArrays):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Predictor:
+class Predictor(ReadOnlyArrays):
     """Predicts forces at any conditions, with model error and uncertainty."""
 
     path: float  #: path curvature of most readings [1/m], the default of predictions; 0 on a flat track
