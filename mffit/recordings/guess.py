@@ -18,7 +18,7 @@ from mffit.recordings.slip_definition import SLIP, slip_definition
 from mffit.recordings.unstated import Choice, FoundChannel, Guess, Remark, choices
 from mffit.sweeps.about import simplified
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel
-from mffit.sweeps.columns import numbers, standing
+from mffit.sweeps.columns import UNCERTAINTIES, numbers, standing
 from mffit.sweeps.frames import FORCES, MOMENTS, letter_of
 from mffit.sweeps.raw_table import RawTable, with_values
 from mffit.sweeps.units import converted, is_unit, spelt
@@ -136,6 +136,7 @@ def _guessed(
     if slip.force_reversed:
         found["Fx_N"] = found["Fx_N"].reversed(slip.force_reversed)
     remarks += _asked(raw, found)
+    found = _as_their_channels(found)
     ordered = {channel.name: found[channel.name] for channel in SWEEP_CHANNELS if channel.name in found}
     return Guesses(ordered, tuple(remarks))
 
@@ -191,13 +192,25 @@ def _with_chosen(
 ) -> Guesses:
     """The guesses with chosen columns in place of those of the ``touched`` headings; what that answers is not asked."""
     kept = {name: guess for name, guess in guessed.found.items() if guess.heading not in touched}
-    found = {**kept, **chosen}
+    found = _as_their_channels({**kept, **chosen})
     ordered = {c.name: found[c.name] for c in SWEEP_CHANNELS if c.name in found}
     words = "|".join(map(re.escape, {*touched, *chosen}))
     about = re.compile(rf"(?<![\w\[])(?:{words})(?![\w\]])")
     asked = _asked(raw, guessed.found)
     doubts = [one for one in guessed.remarks if one not in asked and not about.search(one.said)]
     return Guesses(ordered, (*doubts, *_asked(raw, ordered, touched)))
+
+
+def _as_their_channels(found: Mapping[str, Guess]) -> dict[str, Guess]:
+    """The guesses, with uncertainties of which no unit is stated in the unit of their readings."""
+    units = dict[str, Guess]()
+    for name, readings in UNCERTAINTIES.items():
+        u, read = found.get(name), found.get(readings)
+        if u is None or read is None or u.stated or u.heading == name or (u.unit and not u.assumed):
+            continue
+        unit = read.unit_of_readings
+        units[name] = u._replace(unit=unit, assumed=True, why=f"taken in {unit}, like {read.heading}")
+    return {**found, **units}
 
 
 def _in_one_frame(columns: dict[str, FoundChannel]) -> tuple[dict[str, FoundChannel], list[Remark]]:

@@ -11,7 +11,7 @@ import pandas as pd
 from mffit.config.lines import line_text
 from mffit.config.models import Column
 from mffit.errors import InputError, shortened
-from mffit.quantities import CHANNELS, u_column
+from mffit.quantities import CHANNELS, column, u_column
 from mffit.sweeps import constants
 from mffit.sweeps.about import WORDS
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel, nearest_channel, nearest_heading
@@ -24,11 +24,12 @@ from mffit.sweeps.raw_table import (
     with_decimal_point,
     with_values,
 )
-from mffit.sweeps.units import UnknownUnitError, converted, factor, is_unit
+from mffit.sweeps.units import UnknownUnitError, converted, factor, is_unit, spelt
 from tir.frozen import ReadOnlyArrays
 
 DIRECTIONS = {"forward": 1, "backward": -1, "1": 1, "+1": 1, "-1": -1}
-UNCERTAINTIES = tuple(u_column(name) for name in CHANNELS)
+UNCERTAINTIES = {u_column(name): column(name) for name in CHANNELS}
+"""By column of standard uncertainties, that of the readings."""
 MAY_BE_BLANK = frozenset({"iteration", "point", "time_s", *UNCERTAINTIES})
 NUMBER_WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
 
@@ -98,10 +99,11 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
         if channel.name not in headings:
             continue
         name, gaps = channel.name, "time_s" in headings and channel.name != "time_s"
-        source = _Source(raw, channel, headings[name], mapping.get(name), gaps, warnings)
+        mapped = _as_its_channel(name, mapping, headings, raw, warnings)
+        source = _Source(raw, channel, headings[name], mapped, gaps, warnings)
         values = _read(source)
         if values is not None and name in UNCERTAINTIES:  # the table lists them after their channels
-            values = _credible(source, values, found.get(name.removeprefix("u_"), np.zeros(0)))
+            values = _credible(source, values, found.get(UNCERTAINTIES[name], np.zeros(0)))
         if values is not None:
             found[name] = values
     taken = {*headings, *headings.values()}
@@ -113,6 +115,26 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
     order = sorted(found, key=lambda name: raw.headings.index(headings[name]))
     table = pd.DataFrame({**{name: found[name] for name in order}, **extras}, copy=False)
     return Columns(raw, table, direction, tuple(warnings), {name: headings[name] for name in order}, at_rest)
+
+
+def _as_its_channel(
+    name: str, mapping: Mapping[str, Column], headings: Mapping[str, str], raw: RawTable, warnings: list[str]
+) -> Column | None:
+    """What ``tyre.toml`` gives for a column; uncertainties without a unit are in that of their readings, which is warned of."""
+    mapped, readings, heading = mapping.get(name), UNCERTAINTIES.get(name, ""), headings[name]
+    if readings not in headings or heading == name or raw.unit(heading):
+        return mapped
+    if mapped is not None and (mapped.unit or mapped.scale != 1.0):
+        return mapped
+    given = mapping.get(readings, Column())
+    unit, scale = given.unit or raw.unit(headings[readings]), abs(given.scale)
+    if scale == 1.0 and (not unit or spelt(unit) == spelt(BY_NAME[name].unit)):
+        return mapped
+    warnings.append(
+        f"{raw.path}:{raw.heading_line}: column {heading}: states no unit; read as {headings[readings]} is, "
+        f"{f'in {unit}' if unit else f'times {scale:g}'}; if that is wrong, give its unit under [columns]"
+    )
+    return Column(column=heading, unit=unit or None, scale=scale)
 
 
 def _without_standstill(raw: RawTable, headings: Mapping[str, str]) -> tuple[RawTable, np.ndarray]:

@@ -170,7 +170,7 @@ function row(column) {
   const names = ["", ...table.channels.map(one => one.name)];
   const is = element("select", "", names.map(name => new Option(name || "not used", name)),
     {ariaLabel: `${column.heading} is`, value: column.channel || ""});
-  const unit = element("input", "", "", {value: column.unit, placeholder: "as stated", size: 8,
+  const unit = element("input", "", "", {value: column.unit, placeholder: column.stated ? "as stated" : "not stated", size: 8,
     ariaLabel: `unit of ${column.heading}`, onchange: () => { column.unit = unit.value.trim(); }});
   const minus = checkbox(column.minus, {ariaLabel: `turn the sign of ${column.heading}`,
     onchange: () => { column.minus = minus.checked; }});

@@ -13,7 +13,7 @@ from mffit import pipeline
 from mffit.errors import InputError
 from mffit.points.stretch import StretchNote, stretch_table
 from mffit.recordings import Stated, project_text, sniff
-from mffit.recordings.guess import guesses
+from mffit.recordings.guess import ColumnChoice, corrected, guesses
 from mffit.report import text
 from mffit.sweeps.raw_table import RawTable
 
@@ -49,6 +49,24 @@ def guessed(units=None, radius=None, **other):
 
 def units(**other) -> dict[str, str]:
     return {name: guess.unit for name, guess in guessed(**other).found.items()}
+
+
+def test_uncertainties_are_in_the_unit_of_their_readings():
+    """Whether a user names the column or chooses it; a chosen unit holds."""
+    raw = RawTable(
+        headings=("FY", "MZ", "uFy", "uMz"),
+        units=("daN", "Nm", "", "mNm"),
+        cells=(-230.0 * WAVE, 60.0 * WAVE, np.full(N, 2.0), np.full(N, 900.0)),
+        lines=range(2, N + 2),
+        path=Path("a.csv"),
+        heading_line=1,
+    )
+    named = guesses(raw, named={"u_Fy_N": "uFy", "u_Mz_Nm": "uMz"})
+    assert named.found["u_Fy_N"].why == "taken in daN, like FY"
+    assert (named.found["u_Fy_N"].column.unit, named.found["u_Mz_Nm"].column.unit) == ("daN", None)
+    for typed, unit in (("", "daN"), ("N", "N")):
+        chosen = corrected(guesses(raw), raw, [ColumnChoice("uFy", "u_Fy_N", typed, minus=False)])
+        assert chosen.found["u_Fy_N"].column.unit == unit
 
 
 def test_a_heading_may_state_its_unit_itself():

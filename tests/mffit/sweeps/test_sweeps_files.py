@@ -320,6 +320,28 @@ def test_a_column_below_a_ten_millionth_of_the_readings_is_refused(project):
     )
 
 
+@pytest.mark.parametrize(
+    ("readings", "mapped", "size"),
+    [
+        ({"column": "F", "unit": "daN"}, "uF", 20.0),
+        ({"column": "F", "scale": -10.0}, "uF", 20.0),
+        ({"column": "F", "unit": "daN"}, {"column": "uF", "unit": "N"}, 2.0),
+        ({"column": "F", "unit": "daN"}, {"column": "uF", "scale": 5.0}, 10.0),
+        ({"column": "F"}, "uF", 2.0),
+    ],
+)
+def test_an_uncertainty_without_a_unit_is_in_that_of_its_readings(project, readings, mapped, size):
+    """2 beside a force in daN is 20 N, which is said; a stated unit or scale holds, and newtons need no words."""
+    table = project.tables[NAME].rename(columns={"Fy_N": "F"})
+    project.tables[NAME] = table.assign(uF=2.0)
+    entry = next(entry for entry in project.config["sweep"] if entry["file"] == NAME)
+    entry["columns"] = {"Fy_N": readings, "u_Fy_N": mapped}
+    found = load(project.write())
+    np.testing.assert_allclose(sweep_named(found, NAME).u_Fy, size)
+    said = [warning for warning in found.warnings if "column uF: states no unit; read as F is" in warning]
+    assert len(said) == (size == 20.0)
+
+
 def test_a_blank_uncertainty_is_not_stated(project):
     found = load(with_uncertainties(project, np.nan))
     assert np.isnan(sweep_named(found, NAME).u_Fy[0])
