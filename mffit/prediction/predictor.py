@@ -152,12 +152,14 @@ class Predictor(ReadOnlyArrays):
 
         ``tyre`` is the plain file of the build, ``fitted`` that of the fitted model; on a disc it differs from a plain file for
         turn slip off. Of the conditions, ``alpha_deg``, ``gamma_deg`` and ``Fz_N`` are required, other columns of a sweep and
-        ``phi_t_per_m`` optional. Each channel, here Fy, gets ``Fy_N``, ``u_Fy_N``, ``Fy_best_N``, ``u_Fy_best_N``,
-        ``u_Fy_run_N``, ``u_Fy_setup_N``.
+        ``phi_t_per_m`` optional; of a disc, the result has the last one for every condition. Each channel, here Fy, gets
+        ``Fy_N``, ``u_Fy_N``, ``Fy_best_N``, ``u_Fy_best_N``, ``u_Fy_run_N``, ``u_Fy_setup_N``.
         """
         points = self.points(tyre, conditions)
         plain = Simulation.of(tyre, turn_slip=tyre.turn_slip)
         found = conditions.copy()
+        if self.curved:
+            found[PATH] = points.phi_t
         simulation = Simulation.of(fitted, turn_slip=self.curved)
         for name, one in self.forces(plain, simulation, points, channels).items():
             found[column(name)] = one.file

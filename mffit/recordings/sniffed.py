@@ -48,6 +48,7 @@ class Level(NamedTuple):
 
     value: float  #: in SI
     points: int
+    upper: float | None = None  #: of an angle that is swept from ``value``; None where it is held
 
 
 @dataclass(frozen=True, slots=True)
@@ -364,8 +365,12 @@ def points_from(points: Points, files: Collection[str]) -> Points:
 
 
 def _levels(values: np.ndarray, quantity: levels.LevelKind) -> tuple[Level, ...]:
-    near = levels.nearest_labels(values, quantity)
-    return tuple(
-        Level(float(np.median(values[near == k])), int(np.sum(near == k)))
-        for k in range(near.max(initial=-1) + 1)
-    )
+    """The levels; of camber without points between them, which are a last one with their range."""
+    swept = quantity is levels.CAMBER
+    of = levels.labels(values, quantity) if swept else levels.nearest_labels(values, quantity)
+    held = [
+        Level(float(np.median(values[of == k])), int(np.sum(of == k))) for k in range(of.max(initial=-1) + 1)
+    ]
+    rest = values[(of == levels.NO_LEVEL) & np.isfinite(values)] if swept else values[:0]
+    between = [Level(float(rest.min()), len(rest), float(rest.max()))] if len(rest) else []
+    return (*held, *between)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -124,7 +125,7 @@ def _bands(felt: Points, n: int, fitted: FitResult | None) -> dict[str, dict[str
     }
 
 
-def facets(points: Points) -> tuple[list[dict[str, object]], dict[str, np.ndarray]]:
+def facets(points: Points) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
     """Groups of points by their set-points: name and words of the groups; and by name the group (n,) of each point, -1 for none.
 
     ``inputs`` are those of the model that the groups share; points of a curve over another input are in the same groups.
@@ -167,7 +168,7 @@ def _arrays(points: Points) -> dict[str, np.ndarray]:
     return inputs | {name: getattr(points, name) for name in MEASURED_ONLY}
 
 
-def _facet(name: str, word: str, words: Sequence[str], inputs: Sequence[str]) -> dict[str, object]:
+def _facet(name: str, word: str, words: Sequence[str], inputs: Sequence[str]) -> dict[str, Any]:
     return {
         "name": name,
         "word": word,

@@ -15,6 +15,7 @@ from mffit.config.models import Column
 from mffit.errors import InputError, shortened
 from mffit.output import digest, new_files
 from mffit.pipeline.intake import STRETCHES, project_of, written_project
+from mffit.points import Points
 from mffit.points.loading import read
 from mffit.recordings.disc import DiscPath, disc_signs, files_of_folder
 from mffit.recordings.guess import NO_COLUMNS, ColumnChoice, corrected, guesses
@@ -35,12 +36,13 @@ from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS
 from mffit.sweeps.columns import numbers
 from mffit.viewer.project_points import facets
 from mffit.window.edits import add_recordings
+from tir.errors import counted
 
 PROJECT = "tyre.toml"
 NOT_READABLE_HERE = (PROJECT, STRETCHES)
 SEPARATORS = frozenset('/\\:*?"<>|')
 """Characters that separate folders on some system, or that no file there may have."""
-SETTINGS = ("Fz", "gamma", "kappa", "pressure", "Vx")
+SETTINGS = ("Fz", "alpha", "gamma", "kappa", "pressure", "Vx")
 """Conditions whose levels are shown."""
 
 
@@ -162,9 +164,9 @@ class RecordingsFolder:
         warnings = [*reading.notes, *reading.warnings]
         axes: tuple[str, ...] = ()
         wrong: tuple[str, ...] = ()
-        conditions: list[dict[str, object]] = []
+        conditions: list[dict[str, Any]] = []
         if len(reading.points):
-            conditions = [facet for facet in facets(reading.points)[0] if facet["name"] in SETTINGS]
+            conditions = _conditions(reading.points)
             axes, wrong = axes_of(reading.points, chosen.rig.axes, load_falls=False)
             warnings += before_the_fit(reading.points, chosen)
         return {
@@ -249,6 +251,19 @@ class RecordingsFolder:
         checked(content, path=None, folder=self.folder, lines={})
         disc = DiscPath(float(of_rig["path_radius"]), str(of_rig["path_centre"])) if on_disc else None
         return Stated(**given, axes=of_rig.get("axes"), disc=disc, belt=belt)
+
+
+def _conditions(points: Points) -> list[dict[str, Any]]:
+    """The levels of each setting, in words; of many, the first and the last, and the number of points at no level."""
+    found, groups = facets(points)
+    conditions = []
+    for facet in (one for one in found if one["name"] in SETTINGS):
+        labels = facet["labels"]
+        said = [f"{labels[0]} to {labels[-1]}"] if facet["as_range"] else [*labels]
+        others = int(np.sum(groups[facet["name"]] < 0))
+        said += [f"others ({counted(others, 'point')})"] if others else []
+        conditions.append({"word": facet["word"], "labels": said})
+    return conditions
 
 
 @contextmanager

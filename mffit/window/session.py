@@ -204,7 +204,10 @@ class Session:
         self.fits = 0  #: finished fits
         self.readings: dict[str, Any] | None = None  #: for the page until the first fit ends
         self.last: RunOutcome | None = None  #: of the last run
-        self._ended_with: tuple[str, dict[Path, int]] = ("", {})  #: tyre.toml and recordings when it had ended
+        self._ended_with: tuple[str, dict[Path, int]] = (
+            "",
+            {},
+        )  #: tyre.toml and recordings when it had ended
         self._seen: tuple[str | None, str, Config | None] = (None, "", None)
         self._fitted = ""  #: digest of the tyre.toml of the last fit
         self._run: Run | None = None

@@ -123,7 +123,8 @@ def _conditions(sniffed: Sniffed) -> str:
 
 
 def _level(level: Level, factor: float, digits: int) -> str:
-    return f"{factor * level.value + 0.0:.{digits}f} ({level.points})"
+    ends = [level.value] if level.upper is None else [level.value, level.upper]
+    return f"{' to '.join(f'{factor * x + 0.0:.{digits}f}' for x in ends)} ({level.points})"
 
 
 def _stretches(sniffed: Sniffed) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ from conftest import DISC, brush, build, disc_of_a_brush
 import tir
 from mffit.fit.coverage import UNSEEN
 from mffit.measured import camber_of_no_spin
+from mffit.report.text.prediction import prediction_summary
 from mffit.rig import Simulation
 from mffit.rig_errors import error_of
 from mffit.rounding import AtLeast
@@ -119,6 +121,11 @@ def test_without_a_path_the_prediction_is_on_that_of_the_readings(built):
     at = {"alpha_deg": [3.0] * 2, "gamma_deg": 10.0, "Fz_N": 1700.0}
     found = built.predict(**at, phi_t_per_m=[-1.0 / DISC, np.nan])
     assert found["Fy_best_N"][0] == pytest.approx(found["Fy_best_N"][1])
+    unstated = built.predict(**at)
+    assert unstated["phi_t_per_m"].to_numpy() == pytest.approx(-1.0 / DISC)
+    assert "2 of 2 conditions are on a curved path, as on the disc" in prediction_summary(unstated, Path("a"))
+    straight = built.predict(**at, phi_t_per_m=0.0)
+    assert "curved" not in prediction_summary(straight, Path("a"))
 
 
 def test_beyond_the_curvature_of_the_disc_the_interval_grows_and_it_is_said(built):

@@ -287,3 +287,13 @@ def test_a_column_of_runs_is_known_by_its_usual_names(tmp_path, heading):
     assert sniff([path]).recordings[0].guesses["run"].heading == heading
     table.assign(**{heading: np.arange(len(table))}).to_csv(path, index=False)  # numbers of rows
     assert "run" not in sniff([path]).recordings[0].guesses
+
+
+def test_points_of_a_camber_sweep_are_not_counted_as_upright(tmp_path):
+    at = [*((0, gamma) for gamma in range(-50, 51, 10)), *((alpha, 0) for alpha in np.arange(-5, 5.1, 0.5))]
+    rows = [f"{alpha},{gamma},900,{-150 * alpha - 10 * gamma}" for alpha, gamma in at]
+    (tmp_path / "a.csv").write_text("alpha_deg,gamma_deg,Fz_N,Fy_N\n" + "\n".join(rows) + "\n")
+    held, swept = sniff([tmp_path / "a.csv"]).conditions["camber"]
+    assert (held.value, held.points, held.upper) == (0.0, 22, None)
+    assert np.degrees([swept.value, swept.upper]) == pytest.approx([-50.0, 50.0])
+    assert swept.points == 10
