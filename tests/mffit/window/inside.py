@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from mffit.window.recordings_folder import RecordingsFolder
+
+DISC = Path(__file__).parents[3] / "samples" / "front-120-70"
 PORT = 8123
 HERE = f"http://127.0.0.1:{PORT}"
 
@@ -23,3 +27,16 @@ def client_of(shown: Any, *, has_cookie: bool = True, headers: Any = None, closi
     found = testclient.TestClient(app, base_url=HERE, headers=origin, cookies=cookies)
     found.home, found.entrance = entrance.home, entrance
     return found
+
+
+def of_disc_beside_a_foreign_table(folder: Path) -> RecordingsFolder:
+    """Recordings of a disc, and a table of something else."""
+    for name in (
+        "sideslip_1400N.csv",
+        "camber_1400N.csv",
+        "zero_1400N_forward.csv",
+        "zero_1400N_backward.csv",
+    ):
+        (folder / name).write_bytes((DISC / name).read_bytes())
+    (folder / "costs.csv").write_text("month,costs\n1,10\n2,20\n", encoding="utf-8")
+    return RecordingsFolder(folder)

@@ -21,6 +21,7 @@ from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
+from inside import of_disc_beside_a_foreign_table
 
 import mffit
 from mffit.quantities import SIDEWAYS
@@ -472,6 +473,44 @@ def test_a_folder_dropped_into_the_page_is_stored_once_agreed(browser, original,
         assert browser.find_element("css selector", "#tyre").is_displayed()
         look(browser)
         assert console_errors(browser) == []
+
+
+def test_the_page_proposes_what_the_ticked_recordings_say_and_sends_only_what_was_chosen(browser, tmp_path):
+    from mffit.window.app import Opened
+
+    def value(name: str) -> str:
+        return str(ask(browser, f"document.querySelector('[name={name}]').value"))
+
+    fill = """for (const [name, x] of Object.entries(arguments[0])) {
+      const field = document.querySelector(`[name=${name}]`);
+      field.value = x;
+      for (const kind of ["input", "change"]) field.dispatchEvent(new Event(kind, {bubbles: true}));
+    }"""
+    of_tyre = {"unloaded_radius": 0.2992, "nominal_load": 1400, "nominal_pressure": 250}
+    of_disc = {"type": "rotating-disk", "path_radius": 1.323}
+    status = lambda: browser.find_element("id", "status").text  # noqa: E731
+    with served(Opened(folder=of_disc_beside_a_foreign_table(tmp_path))) as address:
+        enter(browser, address)
+        until(lambda: "do not say yet what rig and axes" in status())
+        assert (value("type"), value("axes")) == ("", "")
+        assert "take its tick away" in browser.find_element("id", "problems").text
+        press(browser, "#groups section:has([aria-label='costs is']) .files input")
+        until(lambda: "These look like recordings of a disc" in status())
+        assert not browser.find_element("id", "problems").is_displayed()
+        assert (value("type"), value("axes")) == ("", "iso")
+        browser.execute_script(fill, of_tyre | of_disc)
+        press(browser, "#check")
+        assert not ask(browser, "document.getElementById('choice').checkValidity()")  # left or right?
+        browser.execute_script(fill, {"path_centre": "left"})
+        press(browser, "#check")
+        until(lambda: "Checked" in status())
+        assert "camber: " in browser.find_element("id", "conditions").text
+        press(browser, "#choice [type=submit]")
+        until(lambda: (tmp_path / "tyre.toml").exists())
+    text = (tmp_path / "tyre.toml").read_text(encoding="utf-8")
+    assert 'type = "rotating-disk"' in text
+    assert "as chosen" not in text
+    assert "costs.csv" not in text
 
 
 @contextmanager

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from flat_belt import drive_recording, recording, write_mat
-from inside import client_of
+from inside import DISC, client_of, of_disc_beside_a_foreign_table
 
 from mffit import config, points
 from mffit.errors import InputError
@@ -25,7 +25,6 @@ from mffit.window.reading import ReadingProcess
 from mffit.window.recordings_folder import RecordingsFolder
 from mffit.window.session import Session
 
-DISC = Path(__file__).parents[3] / "samples" / "front-120-70"
 TYRE = {"name": "t", "unloaded_radius": 0.2992, "nominal_load": 1400, "nominal_pressure": 250}
 BELT = {"type": "flat-track", "axes": "iso", "path_radius": None, "path_centre": "left"}
 
@@ -394,19 +393,6 @@ class Endless:
 
     def __reduce__(self) -> Any:
         return time.sleep, (60.0,)
-
-
-def of_disc_beside_a_foreign_table(folder: Path) -> RecordingsFolder:
-    """Recordings of a disc, and a table of something else."""
-    for name in (
-        "sideslip_1400N.csv",
-        "camber_1400N.csv",
-        "zero_1400N_forward.csv",
-        "zero_1400N_backward.csv",
-    ):
-        (folder / name).write_bytes((DISC / name).read_bytes())
-    (folder / "costs.csv").write_text("month,costs\n1,10\n2,20\n", encoding="utf-8")
-    return RecordingsFolder(folder)
 
 
 def test_a_foreign_table_leaves_rig_and_axes_open_until_its_tick_is_taken_away(tmp_path):
