@@ -82,8 +82,8 @@ def taken_for(guess: Guess) -> Remark:
     """The question about a column that is taken because of its unit."""
     channel = guess.channel
     return Remark(
-        f"{guess.heading} [{guess.stated}] is taken as {channel.name}, because no other unused column has a unit of "
-        f"{KINDS[channel.unit]}: is it the {channel.description}?",
+        f"{guess.heading} [{guess.stated}] is taken as {channel.name} ({channel.description}), because no other unused column "
+        f"has a unit of {KINDS[channel.unit]}: is that right?",
         f" If not, remove {channel.name} under [columns]",
     )
 
