@@ -52,7 +52,10 @@ def test_the_only_column_in_a_unit_of_pressure_or_speed_is_taken_with_a_question
     assert pytest.approx(10.0) == sweep.V
     text = toml.read_text(encoding="utf-8")
     assert "# Druck [bar] is taken as p_kPa" in text
-    assert "p_kPa (inflation pressure), because no other unused column has a unit of pressure: is that right?" in text
+    assert (
+        "p_kPa (inflation pressure), because no other unused column has a unit of pressure: is that right?"
+        in text
+    )
     assert 'p_kPa = "Druck"' in text
 
 
