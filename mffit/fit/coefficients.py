@@ -80,6 +80,15 @@ def coefficient_records(
     return out
 
 
+def with_u(record: Coefficient, u: float) -> Coefficient:
+    """The record with the standard uncertainty that is known after the fit."""
+    interval = _interval(record.value, u)
+    if record.bounds is not None:
+        interval = max(interval[0], record.bounds[0]), min(interval[1], record.bounds[1])
+    origin = record.origin.replace(f"+- {record.stderr:.2g}", f"+- {u:.2g}")
+    return replace(record, stderr=u, interval=interval, origin=origin)
+
+
 def _interval(value: float, u: float) -> tuple[float, float]:
     """The 95 % interval of a normal distribution."""
     return value - COVERAGE_FACTOR_95 * u, value + COVERAGE_FACTOR_95 * u

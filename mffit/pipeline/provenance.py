@@ -83,7 +83,9 @@ def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult,
                     else ""
                 )
             )
-        return marked(tyre.annotate(measured=quantities, provenance=provenance), trust.reasons)
+        measured_as = fitted.coefficients["PECP1"].origin
+        status = {"PECP1": measured_as} if "+-" in tyre.status.get("PECP1", "") else {}
+        return marked(tyre.annotate(status=status, measured=quantities, provenance=provenance), trust.reasons)
 
     return annotated
 

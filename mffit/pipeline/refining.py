@@ -8,6 +8,7 @@ from mffit import fit as fitting
 from mffit.comparison.characteristics import characteristics
 from mffit.config import Config
 from mffit.fit import FitResult
+from mffit.fit.coefficients import with_u
 from mffit.measured import Measured
 from mffit.measured.constants import SPIN_BIAS_OF_MODEL
 from mffit.measured.result import AfterFit
@@ -45,7 +46,13 @@ def fit_and_measure(
     if spin is not None and before.carried is not None and before.carried.source == "debiased":
         before = measure(config, sound, base, AfterFit(spin=spin))[1]
         fitted = fit(before)
-    return measure(config, sound, base, _after(config, points, before, fitted, spin))[1], fitted
+    after = measure(config, sound, base, _after(config, points, before, fitted, spin))[1]
+    own = fitted.coefficients["PECP1"]
+    # the bias of finite spin is known better than before the fit
+    if after.carried is not None and own.stderr is not None:
+        stated = {**fitted.coefficients, "PECP1": with_u(own, after.carried.pecp1.u)}
+        fitted = replace(fitted, coefficients=stated)
+    return after, fitted
 
 
 def _after(

@@ -161,6 +161,9 @@ def test_the_measured_quantities_in_the_file_are_those_of_the_json(tyre, result)
     for key in ("epsilon_gamma", "C_phit_Nm", "r_e_m", "F_phit_N"):
         assert tyre.measured[key].value == pytest.approx(result["spin"][key])
         assert tyre.measured[key].u == pytest.approx(result["spin"][f"u_{key}"])
+    u = result["spin"]["u_epsilon_gamma"]
+    assert result["fit"]["coefficients"]["PECP1"]["stderr"] == u
+    assert tyre.status["PECP1"] == f"measured +- {u:.2g}"
 
 
 def test_drawn_files_agree_with_their_index(built, tyre, result):
