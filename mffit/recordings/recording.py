@@ -3,7 +3,7 @@
 import math
 import re
 import unicodedata
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import MappingProxyType
@@ -19,7 +19,7 @@ from mffit.points.steady import gaps
 from mffit.recordings.by_unit import KINDS, in_unit_of, named_alike
 from mffit.recordings.guess import NO_COLUMNS, ColumnChoice, corrected, guesses
 from mffit.recordings.tyre_constants import StatedByFile, stated_by
-from mffit.recordings.unstated import Guess
+from mffit.recordings.unstated import Guess, Remark
 from mffit.sheets import file_of
 from mffit.sweeps import formats
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel, unknown_channel
@@ -137,15 +137,7 @@ def recording_of(
     columns = {**columns, **{name: Column(value=value) for name, value in values.items()}}
     guessed = guesses(raw, unloaded_radius=unloaded_radius, named=headings, columns=columns)
     found, remarks = guessed if chosen is None else corrected(guessed, raw, chosen.columns)
-    for name, heading in headings.items():
-        if heading in raw.headings and (name not in found or found[name].heading != heading):
-            left_out = (str(one) for one in remarks if heading in one.said and "left out" in one.said)
-            why = next(
-                left_out, f"it holds no numbers in a unit of {KINDS.get(BY_NAME[name].unit, 'this kind')}"
-            )
-            raise InputError(
-                f"cannot be {name} ({BY_NAME[name].description}): {why}", file=path, column=heading
-            )
+    _refuse_misnamed(headings, raw, found, remarks)
     missing = [channel for channel in SWEEP_CHANNELS if channel.required and channel.name not in found]
     if missing:
         said = _unrecognised(missing, raw, {guess.heading for guess in found.values()})
@@ -164,6 +156,21 @@ def recording_of(
         and (rolls_backward(path) or speed_is_negative(found) if chosen is None else chosen.backward),
         tyre=tyre,
     )
+
+
+def _refuse_misnamed(
+    headings: Mapping[str, str], raw: RawTable, found: Mapping[str, Guess], remarks: Iterable[Remark]
+) -> None:
+    """Raise for a heading that was named for a channel and cannot be it; ``remarks`` say why it was left out."""
+    for name, heading in headings.items():
+        if heading in raw.headings and (name not in found or found[name].heading != heading):
+            left_out = (str(one) for one in remarks if heading in one.said and "left out" in one.said)
+            why = next(
+                left_out, f"it holds no numbers in a unit of {KINDS.get(BY_NAME[name].unit, 'this kind')}"
+            )
+            raise InputError(
+                f"cannot be {name} ({BY_NAME[name].description}): {why}", file=raw.path, column=heading
+            )
 
 
 def _unrecognised(missing: Sequence[Channel], raw: RawTable, taken: Collection[str]) -> tuple[str, str]:
