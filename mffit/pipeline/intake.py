@@ -241,9 +241,9 @@ def written_project(folder: Path, sniffed: Sniffed, text: str) -> list[Path]:
     Raises InputError if one of the files is there already, or the folder cannot be written to.
     """
     names = [slug(r.path) for r in sniffed.recordings]
-    alike = {name for name in names if names.count(name) > 1}  # run_+4 and run_-4
-    drawn = [k for k, r in enumerate(sniffed.recordings) if r.rate > 0.0]
-    pictures = {f"{names[k]}{f'-{k + 1}' * (names[k] in alike)}.png": k for k in drawn}
+    # run_+4 and run_-4 have one name
+    apart = [name if names.count(name) == 1 else f"{name}-{k}" for k, name in enumerate(names, 1)]
+    pictures = {f"{apart[k]}.png": k for k, r in enumerate(sniffed.recordings) if r.rate > 0.0}
     contents = {"tyre.toml": text}
     if sniffed.reading.stretches:
         contents[STRETCHES] = csv_text(stretch_table(sniffed.reading.stretches))
