@@ -28,6 +28,7 @@ from mffit.fit.rig.rig_numbers import scatter_of_setups
 from mffit.fit.rig.zeros import epsilon_gamma_of_model
 from mffit.fit.wheel.vertical import vertical_sentence
 from mffit.fit.wording import (
+    alignment_sentence,
     explanations,
     nominal_pressure_sentences,
     nuisance_sentences,
@@ -128,7 +129,7 @@ def fit(
         explanations=(
             *modelled,
             *explanations(config, files, made.known.values, measured, hand),
-            *filter(None, [vertical_sentence(radii)]),
+            *filter(None, [vertical_sentence(radii), alignment_sentence(config, measured)]),
             *others,
             *remarks(config, points, fitted, tyre.values, wide),
             *([f"{moved[0].upper()}{moved[1:]}."] if moved and not contradicted else []),

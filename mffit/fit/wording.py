@@ -20,6 +20,7 @@ from mffit.fit.influences.nuisance_choice import Gaps, Verdict
 from mffit.fit.influences.nuisances import TEMPERATURE
 from mffit.fit.influences.with_nuisances import NuisanceFit
 from mffit.fit.ranges import single_load, single_pressure
+from mffit.fit.rig.rig_numbers import default_alignment
 from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.written.files import Files, file_names, name_at_temperature
 from mffit.measured import Measured
@@ -51,6 +52,17 @@ def explanations(
     if carried is not None and "PECP1" not in hand.held:
         out.append(f"PECP1 = {float(values['PECP1']):.4f} is eps_gamma {SOURCES[carried.source]}.")
     return out
+
+
+def alignment_sentence(config: Config, measured: Measured) -> str:
+    """The angle that the default of u_slip_alignment_N asserts for this tyre; empty if [rig] states the key."""
+    assumed = default_alignment(config, measured)
+    if assumed is None:
+        return ""
+    return (
+        f"The sideslip axis is taken as aligned to {number(assumed.u, digits=2)} deg (k = 1), the default of u_slip_alignment_N "
+        "over the cornering stiffness: if the rig is set up less well, state the key under [rig]."
+    )
 
 
 def file_sentences(files: Files, names: Mapping[str, str]) -> list[str]:

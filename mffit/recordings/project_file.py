@@ -1,5 +1,6 @@
 """The ``tyre.toml`` for recordings: every value that they state, with comments that name its source."""
 
+import math
 import os
 import re
 from collections import Counter
@@ -10,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 import tomli_w
 
-from mffit.config.models import Column, TyreTable
-from mffit.constants import NAMED_IN_SENTENCE
+from mffit.config.models import Column, RigTable, TyreTable
+from mffit.constants import NAMED_IN_SENTENCE, USUAL_CORNERING_STIFFNESS
 from mffit.points import main_pressure
 from mffit.recordings.disc import DiscPath, disc_signs
 from mffit.recordings.recording import SniffedRecording, rolls_backward, speed_is_negative
@@ -97,6 +98,7 @@ def project_text(sniffed: Sniffed, folder: Path, stated: Stated = NOTHING_STATED
             "[rig]",
             *_path(sniffed, stated.disc, stated.belt),
             _axes(sniffed, stated.axes),
+            *_alignment(stated.nominal_load or tyre_found(sniffed, folder).nominal_load),
             *(ZEROS_OF_A_DISC if stated.disc is not None else ()),
         ],
         *([ROLLING_RADIUS] if stated.disc is not None else []),
@@ -105,6 +107,18 @@ def project_text(sniffed: Sniffed, folder: Path, stated: Stated = NOTHING_STATED
         *_sweeps(recordings, folder, {name: guess.column for name, guess in shared.items()}, of_all),
     ]
     return _text(tables)
+
+
+def _alignment(nominal_load: float | None) -> Iterator[str]:
+    """The line on the alignment that is assumed unless the user states it; none without a nominal load [N]."""
+    key = "u_slip_alignment_N"
+    force = RigTable.model_fields[key].default
+    if nominal_load:
+        angle = math.degrees(force / (USUAL_CORNERING_STIFFNESS * nominal_load))
+        yield (
+            f"# {key} = {force:g}  # side force that a misaligned sideslip axis may still cause: about {angle:.1g} deg of this "
+            "tyre; state what the rig is set up to"
+        )
 
 
 def sweeps_text(sniffed: Sniffed, folder: Path, columns: Mapping[str, Column]) -> str:

@@ -120,6 +120,14 @@ def _declared(config: Config, measured: Measured, load: float) -> dict[str, Decl
     return declared_rig(config.rig, measured.C_alpha.value if measured.C_alpha else usual)
 
 
+def default_alignment(config: Config, measured: Measured) -> Declaration | None:
+    """The sideslip zero [deg] that the default of its key asserts; None if [rig] states the key."""
+    declared = BY_NAME[SIDESLIP_ZERO].declared
+    if declared is None or declared.key in config.rig.model_fields_set:
+        return None
+    return _declared(config, measured, config.tyre.nominal_load)[SIDESLIP_ZERO]
+
+
 def _with_lag(u: float, measured: Measured) -> float:
     """Standard uncertainty [deg] of the sideslip zero: a lag that no sweep the other way shows moves the readings as it does."""
     return math.hypot(u, math.degrees(measured.lag.angle) if measured.lag else 0.0)

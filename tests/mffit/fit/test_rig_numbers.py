@@ -13,6 +13,7 @@ from mffit import config
 from mffit.fit.by_hand import NO_HAND
 from mffit.fit.plan import fit_plan
 from mffit.fit.rig.rig_numbers import held_rig, known_faults, known_zeros, rig_numbers, unseen_zeros
+from mffit.fit.wording import alignment_sentence
 from mffit.points import make_points
 from mffit.rig import Simulation
 from tir import Quantity
@@ -49,6 +50,15 @@ def direct(**changes):
 
 def by_name(config, measured):
     return {number.name: number for number in rig_numbers(config, measured)}
+
+
+def test_the_default_of_the_alignment_is_said_as_an_angle():
+    """25 N of a car tyre of 99 kN/rad assert 0.014 deg; what [rig] states is not repeated."""
+    car = direct(C_alpha=Quantity(-99e3, 500.0, "N/rad"))
+    given = rig().model_dump(exclude_unset=True)
+    assert not alignment_sentence(config.load(given), car)
+    del given["rig"]["u_slip_alignment_N"]
+    assert "is taken as aligned to 0.014 deg" in alignment_sentence(config.load(given), car)
 
 
 def test_every_declared_doubt_is_a_prior_of_that_width():

@@ -106,6 +106,8 @@ def test_units_that_a_file_does_not_state_are_marked_as_assumed(tmp_path):
     assert content["columns"]["p_kPa"] == {"column": "P", "unit": "bar"}
     assert content["columns"]["V_mps"] == {"column": "V", "unit": "m/s"}
     assert "the file states no unit" in written[0].read_text()
+    assert "# u_slip_alignment_N = 25  # side force" in written[0].read_text()
+    assert "about 0.1 deg of this tyre" in written[0].read_text()
     assert content["tyre"]["nominal_pressure"] == pytest.approx(83, abs=1)
 
 
