@@ -149,10 +149,8 @@ def fit_plan(
     scatter |= {name: prior.spread for name, prior in fleet.items()}
     absent = ODD_TERMS if config.tyre.side == "symmetric" else frozenset()
     held = {name: scatter[name] for row in cover for name in row.held if name not in absent}
-    extra: list[str] = []
-    if config.rolling_radius:
-        extra += OF_ROLLING_RADIUS
-        scatter = {**OF_ROLLING_RADIUS, **{n: u for n in extra if (u := known.u.get(n))}, **scatter}
+    extra = [*OF_ROLLING_RADIUS] if config.rolling_radius else []
+    scatter = {**{n: known.u.get(n) or OF_ROLLING_RADIUS[n] for n in extra}, **scatter}
     expected = {**start, **{name: prior.expected for name, prior in fleet.items()}}
     if measured.carried is not None and measured.carried.is_free:
         extra.append("PECP1")
