@@ -125,8 +125,10 @@ def sniff(
     if len(bad) == len(recordings):
         raise InputError(f"every run is bad, as {bad[0].why}", file=files[0])
     found, config = _read_under_axes(recordings, bad, unloaded_radius)
-    two = [two_tyres.said(facts) for facts in two_tyres.find(found.points, config)][:1]
-    two = two or list(filter(None, [two_specimens(summaries)]))
+    two = [
+        *map(two_tyres.said, two_tyres.find(found.points, config)),
+        *filter(None, [two_specimens(summaries)]),
+    ][:1]
     warnings = (
         *found.reading.warnings,
         *(f"{error} (this sheet is left out)" for error in refused),

@@ -114,9 +114,6 @@ class RecordingsFolder:
         problems, found = [], None
         try:
             found = self._sniffed(chosen) if chosen else None
-        except UnrecognisedError as error:
-            cure = "choose its columns below, or take its tick away"
-            problems.append(str(InputError(f"{error.said}: {cure}", file=error.file, line=error.line)))
         except InputError as error:
             problems.append(str(error))
         problems += [f"{run.recording.name} is left out: {run.why}" for run in bad_runs(summaries)]
@@ -138,7 +135,11 @@ class RecordingsFolder:
 
     def _sniffed(self, chosen: Mapping[Path, ChosenFile], radius: float | None = None) -> Sniffed:
         """What the chosen files hold; the unloaded radius [m], if known, checks the speed of rotation."""
-        return sniff(sorted(chosen), unloaded_radius=radius, chosen=chosen, columns=self._columns)
+        try:
+            return sniff(sorted(chosen), unloaded_radius=radius, chosen=chosen, columns=self._columns)
+        except UnrecognisedError as error:
+            cure = "choose its columns below, or take its tick away"
+            raise InputError(f"{error.said}: {cure}", file=error.file, line=error.line) from None
 
     def _remarks(self, group: Mapping[str, Any], chosen: Mapping[Path, ChosenFile]) -> list[str]:
         """What the columns of a group leave to ask; nothing if none of its files is used."""

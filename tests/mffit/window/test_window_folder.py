@@ -458,5 +458,14 @@ def test_a_recording_to_add_is_shown_as_columns_of_the_project_read_it(growing):
     lines = [line for line in added["sweeps"].splitlines() if line and not line.startswith("#")]
     assert lines == ["[[sweep]]", 'file = "camber_900.csv"']
     row["channel"] = ""
-    with pytest.raises(InputError, match=r'\[columns\] of the project reads "Kraft quer" as Fy_N'):
+    with pytest.raises(
+        InputError, match=r"Fy_N may be Kraft quer.*: choose its columns below, or take its tick away"
+    ):
+        found.added({"groups": shown["groups"]})
+    row["channel"] = "Fy_N"
+    growing.write_text(growing.read_text(encoding="utf-8") + 'T_degC = "T_degC"\n', encoding="utf-8")
+    next(row for row in group["columns"] if row["heading"] == "T_degC")["channel"] = ""
+    with pytest.raises(
+        InputError, match=r'\[columns\] of the project reads "T_degC" as T_degC in every file'
+    ):
         found.added({"groups": shown["groups"]})
