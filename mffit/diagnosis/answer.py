@@ -68,7 +68,7 @@ def answer(
         given.predict(one.refined.state) if one.chosen.effects or one.coefficients else before
         for one in (found, done)
     )
-    delivers = any(effect.kind == "tyre" and _in_file(effect) for effect in done.chosen.effects)
+    delivers = any(effect.kind == "tyre" and effect.in_file for effect in done.chosen.effects)
     again = bool(done.chosen.effects) and any(name in BY_NAME for name in done.coefficients)
     corrected = _corrected(search.tyre, done, u)
     diagnosis = Diagnosis(
@@ -112,11 +112,6 @@ def _limits(confirmed: Confirmed, candidates: Sequence[Effect]) -> tuple[Limit, 
     """The limits of the candidates that are neither named nor tied with a named one."""
     known = {i for one in confirmed.named for i in (one.effect.id, *one.tied_with)}
     return limits(confirmed.found.problem, confirmed.found.chosen, candidates, known)
-
-
-def _in_file(effect: Effect) -> bool:
-    """Whether a property file can hold a number of the effect."""
-    return effect.switches or any(name in BY_NAME for name in effect.parameters)
 
 
 def _with_repair(named: AcceptedEffect, done: Explanation, u: Mapping[str, float]) -> AcceptedEffect:

@@ -39,7 +39,8 @@ def with_uncertainties(
 def stated_noise(points: Points, origin: Origin | None = None, channels: Iterable[str] = SIDEWAYS) -> Noise:
     """The stated independent noise of some channels, with the chains along which errors may be correlated."""
     scatter = {name: Scatter() for name in CHANNELS if name in set(channels)}
-    u = np.concatenate([points.u(name) for name in scatter])
+    unsettled = _first_of_a_moving_sweep(points)
+    u = np.concatenate([np.where(unsettled, np.inf, points.u(name)) for name in scatter])
     sweeps = 1 + int(points.sweep.max(initial=0))
     chain = np.concatenate([points.sweep + k * sweeps for k in range(len(scatter))])
     order, longer = _in_time(points)
@@ -48,6 +49,13 @@ def stated_noise(points: Points, origin: Origin | None = None, channels: Iterabl
         turn[k * len(points) + order] = np.cumsum(known[order]) - 1  # among the readings of the channel
     tiled = {span: np.tile(chain, len(scatter)) for span, chain in longer.items()}
     return Noise(u=u, stated=u, chain=chain, origin=origin, scatter=scatter, longer=tiled, turn=turn)
+
+
+def _first_of_a_moving_sweep(points: Points) -> np.ndarray:
+    """Mask (n,) of the first reading of every continuous sweep: how far the tyre lagged there depends on what was before."""
+    first = np.zeros(len(points), dtype=bool)
+    first[np.unique(points.sweep, return_index=True)[1]] = True
+    return first & points.continuous
 
 
 def _in_time(points: Points) -> tuple[np.ndarray, dict[MemorySpan, np.ndarray]]:

@@ -112,12 +112,13 @@ def _cure(diagnosis: Diagnosis) -> str:
 def advice(diagnosis: Diagnosis) -> list[str]:
     """What to do, in short sentences: which property file to use, what to mend at the rig, what to keep constant."""
 
-    def names(*kinds: str) -> str:
-        return listed([one.effect.name for one in diagnosis.repaired if one.effect.kind in kinds])
+    def names(*kinds: str, in_file: bool = False) -> str:
+        found = [one.effect for one in diagnosis.repaired if one.effect.in_file or not in_file]
+        return listed([effect.name for effect in found if effect.kind in kinds])
 
     file, rig, beside = diagnosis.file_said, names("rig"), names("environment")
     if diagnosis.delivers:
-        found = [f"Use {file}: it contains {names('tyre')}."]
+        found = [f"Use {file}: it contains {names('tyre', in_file=True)}."]
     elif reasons(diagnosis):
         found = [f"Nothing in {file} is corrected."]
     else:

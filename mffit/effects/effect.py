@@ -60,6 +60,11 @@ class Effect:
         return any(free.name == "turn_slip" for free in self.free)
 
     @property
+    def in_file(self) -> bool:
+        """Whether a property file can hold a number of it."""
+        return self.switches or any(name in BY_NAME for name in self.parameters)
+
+    @property
     def differs_by_run(self) -> bool:
         """Whether it frees numbers of single runs."""
         return any(free.per_run for free in self.free) or self.runs_written_out

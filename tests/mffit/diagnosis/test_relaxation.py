@@ -59,6 +59,15 @@ def test_the_lag_of_a_moving_sweep_is_named_with_its_length(tyre):
     assert value == pytest.approx(SIGMA, abs=max(5.0 * error, 0.03))
 
 
+def test_a_sweep_that_begins_in_motion_shows_the_lag_and_no_hysteresis(tyre):
+    """The wheel steered before the first sample, which therefore lags although no sample before it tells."""
+    points = campaign(tyre, SIGMA)
+    running = points.select((points.time > 1.0) & (points.time < 13.0))
+    found = diagnose(running, tyre, CONFIG)
+    assert [f.effect.id for f in found.effects] == ["relaxation"]
+    assert found.effects[0].parameters["relaxation_m"][0] == pytest.approx(SIGMA, abs=0.02)
+
+
 def test_a_moving_sweep_without_lag_has_no_relaxation(tyre):
     assert not diagnose(campaign(tyre, 0.0), tyre, CONFIG).effects
 
