@@ -10,7 +10,7 @@ The modules in the order of the method (:mod:`engine` is the sequence):
    estimate its size, its autocorrelation and offsets of runs. ``selection`` finds the most probable set of effects from the
    evidence of all sets (``subsets``), in competition with unnamed structure (``smooth``, ``bumps``); ``prediction`` judges
    effects by left-out sweeps.
-6. ``rest``: what remains with the effects, and the four answers.
+6. ``estimated``: the numbers of the effects and their standard errors. ``rest``: what remains with them, the four answers.
 7. ``validation``, ``repair``: the gap on left-out sweeps, and the effects and the file that are corrected.
 8. ``ties``, ``limits``: rivals of each effect, the run that separates them, sizes that are excluded.
 9. ``answer``, ``result``, ``notes``, ``wording``: the record, corrected points, sentences.

@@ -11,10 +11,11 @@ import numpy as np
 from mffit.config import Config, axis_signs, declared_faults
 from mffit.diagnosis.answer import answer, named_effects, not_accepted
 from mffit.diagnosis.conditions import by_condition
+from mffit.diagnosis.estimated import estimated
 from mffit.diagnosis.explain import explain
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import declared as declared_inexactness
-from mffit.diagnosis.inexact import with_zeros
+from mffit.diagnosis.inexact import with_rig
 from mffit.diagnosis.needs import possible, without
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import (
@@ -139,7 +140,7 @@ def _search(
         stated=stated,
         candidates=tuple(candidates),
         hidden=tuple(hidden),
-        inexact=with_zeros(inexact, declared, zeros) if zeros else inexact,
+        inexact=with_rig(inexact, declared, zeros),
         declared=declared,
     )
 
@@ -165,6 +166,6 @@ def _confirmed(
     """The explanation if left-out sweeps confirm it, else its first effect alone, else none; its validation; the refusal."""
     done, validation, refused = checked(found, given, search)
     if refused is not None and len(found.chosen.effects) > 1:
-        first = found.only(found.chosen.effects[:1]).with_coefficients(search.inexact)
+        first = estimated(found.only(found.chosen.effects[:1]), search)
         done, validation, _ = checked(first, given, search)
     return done, validation, refused

@@ -10,6 +10,7 @@ import numpy as np
 from mffit.constants import MISFIT_AT_NOISE, TWO_SIGMA
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import bump_scan
+from mffit.diagnosis.estimated import estimated
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.imitation import imitations
@@ -36,7 +37,7 @@ def explain(search: Search) -> Explanation:
         found = replace(found, imitated=imitations(found.problem, search.candidates))
     if seen and found.smooth.found:
         found = _predicting(found, search.inexact)
-    return found.contested()
+    return estimated(found, search).contested()
 
 
 def _all_at_once(search: Search) -> tuple[Simulation, Noise]:

@@ -11,7 +11,7 @@ import numpy as np
 from mffit.diagnosis.bumps import Bump, BumpScan
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.imitation import is_no_imitation
-from mffit.diagnosis.inexact import Inexactness
+from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.prediction import Judged
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
@@ -33,8 +33,10 @@ class Explanation(ReadOnlyArrays):
     bumps: BumpScan
     refined: Hypothesis  #: the chosen effects, estimated together with the coefficients of the model
     coefficients: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    """Estimates of the inexact coefficients: name -> (value, standard error)."""
-    moved: float = 0.0  #: negative log probability that they lie so far from the file by its uncertainty
+    """Estimates of what is uncertain of model and rig: name -> (value, standard error)."""
+    freed: Inexactness = EXACT  #: prior of these numbers
+    weights: Noise | None = None  #: noise of their estimate; None before it
+    strained: bool = False  #: whether the coefficients of a build would have to move further than it explains
     predicted: Mapping[str, Judged] = field(default_factory=dict)
     """Support of each effect by left-out sweeps, if the effects were chosen by prediction."""
     misfit: np.ndarray | None = None
@@ -71,7 +73,7 @@ class Explanation(ReadOnlyArrays):
         Its covariance excludes smooth structure, because a model predicts best if it follows the readings closely. The residuals
         of a model that was fitted to these points count as noise, channel by channel, as in that fit.
         """
-        noise = self.independent
+        noise = self.weights or self.independent
         if self.misfit is not None:
             noise = noise.at_least(self.misfit)
         return DiagnosisProblem(self.problem.points, self.problem.start, noise, self.problem.declared)
@@ -87,7 +89,9 @@ class Explanation(ReadOnlyArrays):
     def choosing(self, chosen: Hypothesis) -> Explanation:
         """The explanation with other effects, without estimated coefficients."""
         best = self.bumps.best(chosen)
-        return replace(self, chosen=chosen, refined=chosen, bump=best, contests=(), further=None)
+        return replace(
+            self, chosen=chosen, refined=chosen, bump=best, contests=(), further=None, weights=None
+        )
 
     def only(self, effects: tuple[Effect, ...]) -> Explanation:
         """The explanation with some of its effects only, refitted."""
@@ -104,15 +108,15 @@ class Explanation(ReadOnlyArrays):
         return replace(self, nothing=nothing, further=further, contests=tuple(contests))
 
     def with_coefficients(self, inexact: Inexactness) -> Explanation:
-        """The explanation with the model's coefficients estimated together with the effects."""
-        refined, coefficients = self.plain.refine(self.chosen, inexact)
-        moved = inexact.surprise({name: value for name, (value, _) in coefficients.items()})
-        return replace(self, refined=refined, coefficients=coefficients, moved=moved)
+        """The explanation with all inexact coefficients estimated together with the effects: there it is linearised again."""
+        return replace(self, refined=self.plain.refine(self.chosen, inexact)[0])
 
     def withdrawn(self) -> Explanation:
         """The explanation without effects and repair; the unnamed structure is still that found with the effects."""
         null = replace(self.problem.null, smooth=self.smooth)
-        return replace(self, chosen=null, refined=null, coefficients={}, contests=(), further=self.nothing)
+        return replace(
+            self, chosen=null, refined=null, coefficients={}, freed=EXACT, contests=(), further=self.nothing
+        )
 
     def certainty(self, effect: Effect) -> float:
         """Probability of an effect against the best unnamed structure in its place.

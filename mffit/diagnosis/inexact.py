@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import block_diag
-from scipy.special import chdtrc
 
-from mffit.diagnosis import constants
 from mffit.fit.priors import scatter
 from mffit.least_squares import root
 from mffit.points import Points
@@ -61,12 +59,17 @@ class Inexactness(ReadOnlyArrays):
         own = self.expected + self.root @ x[len(names) :]
         return dict(zip((*names, *self.names), [*x[: len(names)].tolist(), *own.tolist()], strict=True))
 
-    def surprise(self, numbers: Mapping[str, float]) -> float:
-        """Negative log probability that some of the coefficients are as far from the file as these numbers, or further."""
-        own = self.without(frozenset(self.names) - numbers.keys())
-        away = np.linalg.pinv(own.root) @ (np.array([numbers[name] for name in own.names]) - own.expected)
-        square = float(away @ away) / constants.LOG_ODDS_DIVISOR
-        return -float(np.log(max(chdtrc(len(own.names), square), 1e-300)))
+    def ordered(self, free: Collection[str]) -> Inexactness:
+        """The same prior, numbers that are not ``free`` first, with a triangular root: its last units move the free ones only."""
+        order = sorted(range(len(self.names)), key=lambda k: self.names[k] in free)
+        _, upper = np.linalg.qr(self.root[order].T)
+        return Inexactness(tuple(self.names[k] for k in order), self.expected[order], upper.T)
+
+    def holding(self, names: Collection[str]) -> Inexactness:
+        """The prior of the other numbers if these are as expected."""
+        found = self.ordered([name for name in self.names if name not in names])
+        held = sum(name in names for name in self.names)
+        return Inexactness(found.names[held:], found.expected[held:], found.root[held:, held:])
 
     def without(self, names: frozenset[str]) -> Inexactness:
         """The marginal prior of the other coefficients."""
@@ -89,10 +92,12 @@ def declared(tyre: Tyre, u_coefficients: float) -> Inexactness:
     return Inexactness(tuple(names), values, np.diag(u_coefficients * np.abs(values)))
 
 
-def with_zeros(
+def with_rig(
     known: Inexactness, priors: Mapping[str, tuple[float, float]], names: Sequence[str]
 ) -> Inexactness:
     """The prior with the named numbers of the rig added; ``priors`` has the value and standard uncertainty of each."""
+    if not names:
+        return known
     values, u = zip(*(priors[name] for name in names), strict=True)
     root = block_diag(known.root, np.diag(u))
     return Inexactness((*known.names, *names), np.concatenate([known.expected, values]), root)

@@ -136,11 +136,10 @@ class DiagnosisProblem:
         If an effect changes a coefficient by more than usual, its prior is widened to the change found, so that the prior does
         not pull the estimate back.
         """
-        usual = [number(free, chosen.numbers, self.start, self.points) for free in moving(chosen.effects)]
         numbers, prior = self._refined_numbers(chosen, inexact)
-        if not prior and numbers == usual:
-            return chosen, {}
-        fixed, own = switched(chosen.effects), [n.name for n in usual]
+        fixed, own = switched(chosen.effects), [n.name for n in numbers]
+        if not numbers and not prior:
+            return replace(chosen, state=self.start.with_numbers(fixed)), {}
         now = np.array([self.start.number(name, self.points) for name in prior.names])
         begin = np.linalg.pinv(prior.root) @ (now - prior.expected)
         units = [FreeNumber(n, x, spread=1.0) for n, x in zip(prior.names, begin.tolist(), strict=True)]
@@ -161,6 +160,25 @@ class DiagnosisProblem:
         )
         return refined, {name: (values[name], errors[name]) for name in prior.names}
 
+    def inside(self, refined: Hypothesis) -> list[FreeNumber]:
+        """The numbers of a refined hypothesis that are off their bounds."""
+        numbers, _ = self._refined_numbers(refined, EXACT)
+        return [n for n in numbers if not touches(n.start, n.lower, n.upper)]
+
+    def evidence_at(self, refined: Hypothesis, inexact: Inexactness) -> float:
+        """Log evidence of a refined hypothesis, up to a constant (Laplace approximation)."""
+        numbers, prior = self._refined_numbers(refined, inexact)
+        names = [*(n.name for n in numbers), *prior.names]
+        unit = prior.unit(len(numbers), [n.spread for n in numbers])
+        white = self.noise.whiten(slopes_of(refined.state, self.points, names, self.channels) @ unit)
+        moved = np.array([refined.state.number(name, self.points) for name in prior.names]) - prior.expected
+        away = np.append(
+            [(n.start - n.expected) / n.spread for n in numbers], np.linalg.pinv(prior.root) @ moved
+        )
+        left = self.whitened(refined.state)
+        square = float(left @ left) + float(away @ away)
+        return -0.5 * (square + Informed.of_rows(white, left).log_determinant)
+
     def _refined_numbers(
         self, chosen: Hypothesis, inexact: Inexactness
     ) -> tuple[list[FreeNumber], Inexactness]:
@@ -180,8 +198,8 @@ class DiagnosisProblem:
 
         By group of points, (n,) indices, the change (k,) if it is left out, to first order. Numbers at a bound are held.
         """
-        numbers, prior = self._refined_numbers(refined, inexact)
-        moved = [n for n in numbers if not touches(n.start, n.lower, n.upper)]
+        _, prior = self._refined_numbers(refined, inexact)
+        moved = self.inside(refined)
         names = [*(n.name for n in moved), *prior.names]
         mean = np.append([n.expected for n in moved], prior.expected)
         away = np.array([refined.state.number(name, self.points) for name in names]) - mean

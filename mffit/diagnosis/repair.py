@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from mffit.constants import MOST
+from mffit.diagnosis.estimated import estimated
 from mffit.diagnosis.explanation import Explanation
-from mffit.diagnosis.inexact import EXACT
 from mffit.diagnosis.notes import FileKept, NoRepair
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.rest import Rest
@@ -47,9 +47,8 @@ def checked(
     # Without an effect, refitting coefficients to the points of their own fit repairs nothing.
     if search.asked.seen and not found.chosen.effects:
         found = found.withdrawn()
-    coefficients = search.inexact if found.coefficients else EXACT
     validation = validate(
-        given, found.refined, coefficients, weights=found.plain.noise, seen=search.asked.seen
+        given, found.refined, found.freed, weights=found.plain.noise, seen=search.asked.seen
     )
     if not (found.chosen.effects or found.coefficients) or validation.gain > 0.0:
         return found, validation, None
@@ -68,7 +67,7 @@ def repair(confirmed: Confirmed, validation: Validation, search: Search) -> Repa
     refused: NoRepair | FileKept | None = None
 
     def only(effects: Sequence[Effect]) -> tuple[Explanation, Validation, NoRepair | None]:
-        return checked(found.only(tuple(effects)).with_coefficients(search.inexact), confirmed.given, search)
+        return checked(estimated(found.only(tuple(effects)), search), confirmed.given, search)
 
     likely = [
         one.effect

@@ -67,9 +67,8 @@ def hardly_this_tyre(found: Explanation) -> tuple[Rest, ...]:
     A file of a build is so wrong if its coefficients leave their uncertainty. Otherwise it is the robust misfit in units of the
     stated noise, of the channel that fits better: one channel may be mostly noise.
     """
-    strained = Rest(RestKind.COEFFICIENTS, "", found.moved)
-    if found.problem.structure.allowed and strained.found:
-        return (strained,)
+    if found.strained:
+        return (Rest(RestKind.COEFFICIENTS, "", math.inf),)
     noise = found.scatter
     residual = found.problem.measured - found.problem.predict(found.refined.state)
     z = np.where(np.isfinite(noise.stated), residual / noise.stated, np.nan)

@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.config import Config
 from mffit.constants import TWO_SIGMA
-from mffit.diagnosis.inexact import Inexactness
+from mffit.diagnosis.inexact import Inexactness, with_rig
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import NotVisible, OneSweep
 from mffit.diagnosis.problem import DiagnosisProblem
@@ -64,6 +64,12 @@ class Search:
     @property
     def channels(self) -> tuple[str, ...]:
         return self.stated.channels
+
+    @cached_property
+    def beside(self) -> Inexactness:
+        """The prior of the inexact coefficients and of every declared rig error."""
+        names = [n for n, (_, u) in self.declared.items() if u > 0.0 and n not in self.inexact.names]
+        return with_rig(self.inexact, self.declared, names)
 
     @cached_property
     def misfit(self) -> np.ndarray:

@@ -143,6 +143,7 @@ def explanation(*effects):
     return SimpleNamespace(
         chosen=SimpleNamespace(effects=effects),
         coefficients={},
+        freed=EXACT,
         refined=None,
         plain=SimpleNamespace(noise=None),
     )
@@ -163,7 +164,8 @@ def test_one_number_of_all_channels_decides_about_the_file(monkeypatch, gain_of_
     )
     named = [SimpleNamespace(effect=e, confidence_of_tie=lambda _: 1.0) for e in (GRIP, TEMPERATURE)]
     both, rig = explanation(GRIP, TEMPERATURE), explanation(TEMPERATURE)
-    both.only = lambda effects: SimpleNamespace(with_coefficients=lambda _: explanation(*effects))
+    both.only = lambda effects: explanation(*effects)
+    monkeypatch.setattr(repairing, "estimated", lambda found, _: found)
     monkeypatch.setattr(repairing, "validate", lambda *_, **__: check)
     confirmed = repairing.Confirmed(found=both, given=None, named=named, alternatives={}, rest=())
     done = repairing.repair(confirmed, check, SimpleNamespace(inexact=EXACT, asked=Asked()))

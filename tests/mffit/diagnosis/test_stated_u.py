@@ -7,10 +7,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.special import softmax
+from small_programme import LOADS, TYRE, U_FY, U_MZ
 
-from mffit.diagnosis import answer
+from mffit.config import RigTable
+from mffit.diagnosis import Asked, answer, diagnose
 from mffit.diagnosis.answer import Judgement
 from mffit.diagnosis.inexact import correlated
+from mffit.effects import Effect, Free
+from mffit.points import make_points
+from mffit.rig import Simulation
 
 
 def explained(numbers, stderr=None):
@@ -51,10 +56,46 @@ def test_the_confidence_in_an_effect_is_its_share_of_the_evidence_of_all_that_ma
     assert judged.confidence == judged.together == pytest.approx(answer.tempered(0.9 * share))
 
 
-def test_coefficients_far_from_the_file_are_a_surprise_along_their_covariance_only():
-    covariance = np.array([[1.0, 0.99], [0.99, 1.0]])
-    prior = correlated(["PKY1", "PKY2"], np.array([10.0, 20.0]), covariance)
-    together, apart = {"PKY1": 11.0, "PKY2": 21.0}, {"PKY1": 11.0, "PKY2": 19.0}
-    assert prior.surprise(together) < 1.0
-    assert prior.surprise(apart) > 30.0
-    assert prior.surprise({"PKY1": 11.0}) == pytest.approx(prior.surprise({"PKY2": 19.0}))
+def test_a_prior_with_numbers_held_is_that_of_the_others_if_these_are_as_expected():
+    """PKY1 and PKY2 of standard deviations 1 and 2, correlated by 0.9: with PKY1 known, PKY2 keeps 2 sqrt(1 - 0.9^2)."""
+    prior = correlated(["PKY1", "PKY2"], np.array([10.0, 20.0]), np.array([[1.0, 1.8], [1.8, 4.0]]))
+    held = prior.holding({"PKY1"})
+    assert (held.names, held.expected.tolist()) == (("PKY2",), [20.0])
+    assert abs(held.root[0, 0]) == pytest.approx(2.0 * (1.0 - 0.9**2) ** 0.5)
+    for free in ({"PKY1"}, {"PKY2"}, set()):
+        turned = prior.ordered(free)
+        back = [turned.names.index(name) for name in prior.names]
+        assert (turned.root @ turned.root.T)[np.ix_(back, back)] == pytest.approx(
+            np.array([[1.0, 1.8], [1.8, 4.0]])
+        )
+        assert turned.root[0, 1] == pytest.approx(0.0)
+
+
+GRIP = Effect("grip", "friction", "tyre", "Another friction.", (Free("LMUY", 0.1, (0.0,), 0.3, 2.0),))
+
+
+@pytest.mark.parametrize("u_gain", [0.0, 0.02])
+def test_a_number_is_as_uncertain_as_the_rig_declares_its_gain(u_gain):
+    """Friction of 0.9 in readings of large angles, which a gain of the force changes as much."""
+    rng = np.random.default_rng(3)
+    rows = [(alpha, load) for load in LOADS for alpha in (-12.0, -11.0, -10.0, -9.0, 9.0, 10.0, 11.0, 12.0)]
+    alpha, load = np.array(rows).T
+    points = make_points(
+        np.radians(alpha), 0.0, load, p=250e3, V=10.0, phi_t=0.0, u_Fy=U_FY, u_Mz=U_MZ,
+        sweep=np.repeat(np.arange(len(LOADS)), 8), sweep_names=tuple(f"{x}" for x in LOADS),
+    )  # fmt: skip
+    Fy, Mz = Simulation.of(TYRE.replace(LMUY=0.9)).readings(points).values()
+    noise = rng.standard_normal((2, len(points)))
+    points = points.replace(Fy=Fy + U_FY * noise[0], Mz=Mz + U_MZ * noise[1])
+    config = SimpleNamespace(
+        tyre=SimpleNamespace(name="grip", nominal_load=1400.0),
+        model=SimpleNamespace(turn_slip=True, star=False, u_coefficients=0.0),
+        rig=RigTable(type="flat-track", u_Fy_gain=u_gain, u_Fz_gain=0.0, u_alpha_gain=0.0),
+    )
+    (named,) = diagnose(points, TYRE, config, Asked(effects=(GRIP,))).effects
+    value, u = named.parameters["LMUY"]
+    assert value == pytest.approx(0.9, abs=0.005)
+    if u_gain:
+        assert u == pytest.approx(0.9 * u_gain, rel=0.15)
+    else:
+        assert u < 0.004

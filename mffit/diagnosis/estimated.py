@@ -1,0 +1,113 @@
+"""The numbers of an explanation, estimated together with what is uncertain of model and rig, and their standard errors.
+
+The estimate is that of a build: every reading counts as independent, with the misfit that remains as noise, so that the file is
+the best that the formula can do. So are the standard errors (:mod:`mffit.fit.told`): those of repeated campaigns, in which noise,
+model error and the errors of the rig are drawn anew.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from mffit.constants import TWO_SIGMA
+from mffit.diagnosis.explanation import Explanation
+from mffit.diagnosis.hypothesis import Hypothesis
+from mffit.diagnosis.inexact import EXACT, Inexactness, slopes_of
+from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.search import Search
+from mffit.fit.stages import is_asymmetry
+from mffit.fit.told import Told, numbers_told
+from mffit.numbers import Numbers
+from mffit.points.like import curves
+from mffit.rig_errors import error_of
+from mffit.scatter import rms
+from tir.parameters import BY_NAME
+
+
+def estimated(found: Explanation, search: Search) -> Explanation:
+    """The explanation with the numbers of its effects estimated together with coefficients and rig errors that may move."""
+    near = DiagnosisProblem(found.problem.points, search.start, found.plain.noise, found.problem.declared)
+    left = near.measured - near.predict(found.refined.state)
+    plain = near.seen_through(near.noise.at_least(left))
+    beside = search.beside.without(frozenset(n for e in found.chosen.effects for n in e.parameters))
+    freed = _freed(found, plain, beside, search.inexact.names)
+    refined, coefficients = plain.refine(found.chosen, freed)
+    u = {
+        **refined.stderr,
+        **_standard_errors(found, plain, refined, beside.ordered(freed.names), len(freed.names)),
+    }
+    return replace(
+        found,
+        refined=replace(refined, stderr={name: u[name] for name in refined.stderr}),
+        coefficients={name: (value, u[name]) for name, (value, _) in coefficients.items()},
+        freed=freed,
+        strained=_strained(plain, found.chosen, search),
+        weights=plain.noise,
+    )
+
+
+def _freed(
+    found: Explanation, plain: DiagnosisProblem, beside: Inexactness, known: Sequence[str]
+) -> Inexactness:
+    """The numbers ``beside`` the effects that are estimated with them; all others stay as given, with their uncertainty.
+
+    Calibrations look like the tyre and stay. Zeros, and on a disc asymmetries, would take up a model error, as in a build; beside
+    one, coefficients move only with effects that free some of them, or if more is left than the file is known to miss. Without
+    model error and effects the evidence decides. ``known`` are names of the numbers that may be wrong in the given model.
+    """
+    points, missed = plain.points, any(found.problem.amplitude.values())
+    rig = {n: e for n in beside.names if n not in known and (e := error_of(n)) is not None}
+    free = beside.holding({n for n, e in rig.items() if missed or e.is_gain or not points.curved})
+    if not missed:
+        ask = found.chosen.effects or _evidence(plain, found, free) > _evidence(plain, found, EXACT)
+        return free if ask else EXACT
+    if not found.smooth.found and not any(n in BY_NAME for e in found.chosen.effects for n in e.parameters):
+        return EXACT
+    return free.holding({n for n in free.names if is_asymmetry(n)}) if points.curved else free
+
+
+def _strained(plain: DiagnosisProblem, chosen: Hypothesis, search: Search) -> bool:
+    """Whether the coefficients of a build would have to change forces by more than their uncertainty and its misfit explain."""
+    left = search.asked.left
+    if not left or not search.inexact:
+        return False
+    given, free = (plain.refine(chosen, one)[0].state for one in (EXACT, search.inexact))
+    spread = np.sqrt(np.sum(search.inexact.columns(plain.points, given, plain.channels) ** 2, axis=1))
+    moved, u = (plain.noise.by_channel(x) for x in (plain.predict(free) - plain.predict(given), spread))
+    return any(rms(moved[n]) > TWO_SIGMA * math.hypot(left[n], rms(u[n])) for n in left if n in moved)
+
+
+def _evidence(plain: DiagnosisProblem, found: Explanation, prior: Inexactness) -> float:
+    """Log evidence of the effects estimated together with the numbers of a prior."""
+    return plain.evidence_at(plain.refine(found.chosen, prior)[0], prior)
+
+
+def _standard_errors(
+    found: Explanation, plain: DiagnosisProblem, refined: Hypothesis, beside: Inexactness, freed: int
+) -> dict[str, float]:
+    """By name, standard errors of the refined numbers and of those ``beside``, of which all but the last ``freed`` are held."""
+    points, weights, scatter = plain.points, plain.noise, found.independent
+    numbers = plain.inside(refined)
+    names = [*(n.name for n in numbers), *beside.names]
+    unit = block_diag(np.eye(len(numbers)), beside.root)
+    white = weights.whiten(slopes_of(refined.state, points, names, plain.channels) @ unit)
+    noisy = white * (weights.beyond_weights * scatter.u[weights.used] / weights.u[weights.used])[:, None]
+    left = np.nan_to_num(plain.measured - plain.predict(refined.state))
+    missed = weights.whiten(found.problem.structure.estimated(found.problem.amplitude, left))
+    of, none = curves(points)[weights.used % len(points)], np.zeros(len(names))
+    told = [
+        Told(white[own].T @ white[own], noisy[own].T @ noisy[own], white[own].T @ missed[own], none)
+        for own in (of == k for k in np.unique(of))
+    ]
+    values = np.append([n.start for n in numbers], np.zeros(len(beside.names)))
+    spread = np.append([n.spread for n in numbers], np.ones(len(beside.names)))
+    held = frozenset(beside.names[: len(beside.names) - freed])
+    priors = Numbers(tuple(names), values, np.diag(none), none, values, spread, held)
+    covariance = numbers_told(told, priors).covariance
+    variance = np.sum((unit @ covariance) * unit, axis=1)
+    return dict(zip(names, np.sqrt(np.maximum(variance, 0.0)).tolist(), strict=True))
