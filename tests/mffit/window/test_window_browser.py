@@ -536,6 +536,25 @@ def fitted(tyre_toml: Path, result: Any) -> Any:
     return Opened(session)
 
 
+def test_the_sentence_of_a_refused_change_goes_with_its_cause(browser, tyre_toml, result):
+    """It does not take the name of the coefficient for that of another table, either."""
+    right = tyre_toml.read_bytes()
+    with served(fitted(tyre_toml, result)) as address:
+        enter(browser, address)
+        shown(browser)
+        ask(browser, "mffit.move('PEY1', -0.9)")
+        problem = browser.find_element("css selector", ".coefficient[data-name=PEY1] .problem")
+        for broken, said in ((right + b"[fit", "is not valid TOML"), (b"", "tyre: is missing")):
+            tyre_toml.write_bytes(broken)
+            until(lambda said=said: said in browser.find_element("id", "status").text)
+            press(browser, ".coefficient[data-name=PEY1] .keys button")  # hold
+            until(lambda said=said: said in problem.text)
+            assert not problem.text.startswith("PEY1: is missing")
+            tyre_toml.write_bytes(right)
+            until(lambda: problem.text == "")
+        assert tyre_toml.read_bytes() == right
+
+
 class ForeignServer(ThreadingHTTPServer):
     """A server of somebody else that writes down what it is asked, and answers every stream with a state of its own."""
 

@@ -23,7 +23,7 @@ from inside import client_of
 from mffit.errors import InputError
 from mffit.viewer import project_data
 from mffit.window.app import Opened, within
-from mffit.window.runs import _work, carry_out, out_of
+from mffit.window.runs import RunOutcome, _work, carry_out, out_of
 from mffit.window.session import Session
 
 
@@ -430,6 +430,26 @@ def test_a_run_on_a_wrong_project_ends_with_its_sentence(tyre_toml):
 def test_a_new_recording_is_news_until_tyre_toml_lists_it(session):
     session._news = {"lines": ["2 new"], "unlisted": ["new.csv", "sideslip_900.csv"]}
     assert session.state()["news"] == {"lines": ["2 new"], "unlisted": ["new.csv"]}
+
+
+def test_a_refusal_of_a_run_is_shown_until_tyre_toml_or_a_recording_changes(session):
+    session.last = RunOutcome("refused", 'there is no file "gone.csv"')
+    session._ended_with = session.file.digest, session._there()
+    assert session.state()["last"]["sentence"] == session.last.sentence
+    (session.file.path.parent / "gone.csv").write_text("alpha_deg\n1\n", encoding="utf-8")
+    assert session.state()["last"] is None
+
+
+def test_a_comparison_with_the_base_file_is_offered_once_there_is_a_build(session):
+    config = session.file.config()
+    config = config.model_copy(update={"tyre": config.tyre.model_copy(update={"base": "base.tir"})})
+    out = session.file.path.parent / "out"
+    offered = []
+    for _ in range(2):
+        offered.append("compare" in [page["run"] for page in session._pages(config)])
+        out.mkdir(exist_ok=True)
+        (out / "result.json").touch()
+    assert offered == [False, True]
 
 
 def test_an_unknown_run_is_refused(client):
