@@ -544,7 +544,7 @@ def test_the_sentence_of_a_refused_change_goes_with_its_cause(browser, tyre_toml
         shown(browser)
         ask(browser, "mffit.move('PEY1', -0.9)")
         problem = browser.find_element("css selector", ".coefficient[data-name=PEY1] .problem")
-        for broken, said in ((right + b"[fit", "is not valid TOML"), (b"", "tyre: is missing")):
+        for broken, said in ((right + b"x = ", "is not valid TOML"), (b"", "tyre: is missing")):
             tyre_toml.write_bytes(broken)
             until(lambda said=said: said in browser.find_element("id", "status").text)
             press(browser, ".coefficient[data-name=PEY1] .keys button")  # hold
