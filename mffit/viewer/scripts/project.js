@@ -86,7 +86,8 @@ const projectPart = {
   csv: panel => csvOf(panel, label),
   kept() {
     const {hidden, ranges, reading, bands, fit} = state, colour = byHand.colour ? state.colour : null;
-    return {panels: byHand.panels ? panels.map(({x, y}) => ({x, y})) : null, hidden, ranges, colour, reading, bands, fit, trial};
+    const shown = byHand.panels ? panels.map(({x, y}) => ({x, y})) : null;
+    return {panels: shown, hidden, ranges, colour, reading, bands, fit, trial};
   },
 };
 

@@ -117,7 +117,8 @@ function show() {
 function propose() {
   const {known, disc, axes, tyre} = table;
   for (const option of document.querySelector("[name=axes]").options)
-    option.text = axes.includes(option.value) ? `${option.value} (agrees with the signs)` : option.value || "which axes?";
+    option.text =
+      axes.includes(option.value) ? `${option.value} (agrees with the signs)` : option.value || "which axes?";
   const said = {...tyre, type: known && !disc.length ? "flat-track" : "", axes: axes[0]};
   for (const input of document.querySelectorAll("#tyre [name], #rig [name]"))
     if (!touched.has(input.name) && input.name !== "side") input.value = said[input.name] ?? "";
@@ -170,7 +171,8 @@ function row(column) {
   const names = ["", ...table.channels.map(one => one.name)];
   const is = element("select", "", names.map(name => new Option(name || "not used", name)),
     {ariaLabel: `${column.heading} is`, value: column.channel || ""});
-  const unit = element("input", "", "", {value: column.unit, placeholder: column.stated ? "as stated" : "not stated", size: 8,
+  const unit = element("input", "", "", {value: column.unit, size: 8,
+    placeholder: column.stated ? "as stated" : "not stated",
     ariaLabel: `unit of ${column.heading}`, onchange: () => { column.unit = unit.value.trim(); }});
   const minus = checkbox(column.minus, {ariaLabel: `turn the sign of ${column.heading}`,
     onchange: () => { column.minus = minus.checked; }});

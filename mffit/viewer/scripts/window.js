@@ -53,7 +53,8 @@ hooks.extendRow = (row, keys, box) => {
   const problem = element("p", "problem", "", {role: "alert"});
   let refusedAt = "";  // tyre.toml that a change was meant for
   const refused = found => {
-    const [table, name, field = ""] = (found.key || "").split("."), own = table === "coefficients" && name === row.name;
+    const [table, name, field = ""] = (found.key || "").split(".");
+    const own = table === "coefficients" && name === row.name;
     problem.textContent = own ? `${field || name}: ${found.sentence}` : found.error;
     refusedAt = live.digest;
     for (const input of box.querySelectorAll(".limits input")) input.setAttribute("aria-invalid",
