@@ -12,10 +12,10 @@ from mffit.cli import main
 
 
 def test_a_result_in_doubt_ends_with_3_and_no_page_is_written(tmp_path: Path, capsys):
-    """The stated uncertainty of Fy is too small by 0.58: the file is sound, yet its misfit is above the noise."""
+    """Half the uncertainty of Fy is stated: the file is sound, yet its misfit is above the noise."""
     simulated(flat(loads=(900, 1400)), tmp_path / "p")
     path = tmp_path / "p" / "tyre.toml"
-    column = '[columns]\nu_Fy_N = { column = "u_Fy_N", scale = 0.58 }\n\n'
+    column = '[columns]\nu_Fy_N = { column = "u_Fy_N", scale = 0.5 }\n\n'
     path.write_text(
         path.read_text(encoding="utf-8").replace("[[sweep]]", f"{column}[[sweep]]", 1), encoding="utf-8"
     )
