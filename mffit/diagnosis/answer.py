@@ -15,6 +15,7 @@ from mffit.diagnosis import constants, wording
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
+from mffit.diagnosis.inexact import EXACT
 from mffit.diagnosis.limits import Limit, limits
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import DiagnosisNote
@@ -157,7 +158,7 @@ def _found(
     noise = {name: problem.noise.typical(name) for name in problem.channels}
     separations = [separation(config, problem.points, chosen, t, noise) for t in tied]
     with_it = _with_earlier(found, effect)
-    numbers = found.refined.numbers
+    numbers, freed = found.refined.numbers, found.freed if with_it is found.refined else EXACT
     return AcceptedEffect(
         effect=effect,
         confidence=confidence,
@@ -165,7 +166,7 @@ def _found(
         parameters={n: (numbers[n], u[n]) for n in effect.parameters},
         before={n: given.start.number(n, given.points) for n in effect.parameters},
         gap_after=gap(problem.measured - problem.predict(with_it.state), found.scatter),
-        held_out=validate(given, with_it).gap_after,
+        held_out=validate(given, with_it, freed, weights=found.plain.noise).gap_after,
         tied=tuple(rival.effects[-1] for rival in tied),
         separation=min(separations, key=lambda s: s.chi2, default=None),
         T_ref=chosen.state.faults[T_REF] if "temperatures" in effect.needs else None,

@@ -31,6 +31,7 @@ from mffit.scatter import rms
 from mffit.suspicion import Outlier
 from tir import Tyre
 from tir.frozen import ReadOnlyArrays
+from tir.parameters import BY_NAME
 
 WITH_TERMS = "-with-terms.tir"
 """Ending of the name of the given property file with its coefficients estimated anew, next to the errors found."""
@@ -123,7 +124,7 @@ class Diagnosis(ReadOnlyArrays, Brief):
     smooth: Smooth | None  #: unnamed smooth structure
     outliers: tuple[Outlier, ...]
     coefficients: Mapping[str, tuple[float, float]]
-    """Coefficients estimated together with the effects: name -> (value, standard error)."""
+    """Coefficients and rig errors estimated together with the effects: name -> (value, standard error)."""
     limits: tuple[Limit, ...]  #: upper limits of the effects that were not named
     given: Simulation  #: the given simulation
     state: Simulation  #: the simulation after all corrections
@@ -170,17 +171,25 @@ class Diagnosis(ReadOnlyArrays, Brief):
 
     @property
     def steps(self) -> tuple[GapStep, ...]:
-        """The gap as given, with one repaired effect after the other, and with the coefficients estimated with them."""
+        """The gap as given, with one repaired effect after the other, and with the coefficients estimated with them.
+
+        Rig errors that were estimated with them are no step of their own.
+        """
         check = self.validation
         found = [GapStep("given", "as given", self.gap_examined, check.gap_before)]
         found += [
             GapStep(one.effect.id, one.effect.name, one.gap_after, one.held_out) for one in self.repaired
         ]
-        if self.coefficients:
+        if self.anew:
             found.append(
                 GapStep("coefficients", "coefficients estimated anew", self.gap_after, check.gap_after)
             )
         return tuple(found)
+
+    @property
+    def anew(self) -> bool:
+        """Whether coefficients of the property file were estimated together with the effects."""
+        return any(name in BY_NAME for name in self.coefficients)
 
     @property
     def gap_examined(self) -> Gap:

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from mffit.as_json import Json, document
 from mffit.constants import MISFIT_AT_NOISE, MOST, NAMED_IN_SENTENCE, TWO_SIGMA
-from mffit.diagnosis import constants
+from mffit.diagnosis import constants, priors
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.noise import MemorySpan, Noise, Origin
 from mffit.diagnosis.notes import AnotherTyre, NoRepair, TakenOff, short
@@ -171,7 +171,8 @@ def _misfit(diagnosis: Diagnosis) -> str:
         better = [
             f"{short(diagnosis.gap_after.rms(name))} {unit}" for name, unit, _ in _measured(diagnosis.noise)
         ]
-        what = "the zeros of every set-up" if zeros_of_setups(diagnosis) else "the coefficients"
+        ours = "the coefficients" if diagnosis.anew else "the rig errors"
+        what = "the zeros of every set-up" if zeros_of_setups(diagnosis) else ours
         said += f"; with {what}, estimated within their declared uncertainty, it is {listed(better)}"
     for rest in diagnosis.rest[:1]:
         said += f"; {_remains(rest, diagnosis)}"
@@ -206,11 +207,9 @@ def _as_read(diagnosis: Diagnosis, channel: str) -> str:
 
 
 def zeros_of_setups(diagnosis: Diagnosis) -> dict[str, tuple[float, float]]:
-    """By name, value and standard error of the zeros of single set-ups, estimated together with the effects."""
-    errors = {name: error_of(name) for name in diagnosis.coefficients}
-    return {
-        n: diagnosis.coefficients[n] for n, error in errors.items() if error is not None and error.of_setup
-    }
+    """By name, value and standard error of the zeros of every set-up, if there are several, estimated with the effects."""
+    names = priors.zeros_of_setups(diagnosis.points, diagnosis.noise.channels)
+    return {name: diagnosis.coefficients[name] for name in names if name in diagnosis.coefficients}
 
 
 def _zeros(diagnosis: Diagnosis) -> list[str]:
@@ -267,7 +266,7 @@ def notes(diagnosis: Diagnosis) -> list[str]:
 
 def _grown(diagnosis: Diagnosis) -> list[str]:
     """A sentence on effects that widen the gap until the coefficients are estimated anew; none if no effect does."""
-    steps = diagnosis.steps if diagnosis.coefficients else ()
+    steps = diagnosis.steps if diagnosis.anew else ()
     wider = [
         after.name
         for before, after in pairwise(steps[:-1])

@@ -104,7 +104,9 @@ def simulated(
     tyre: tir.Tyre, table: pd.DataFrame, direction: np.ndarray, result: dict
 ) -> tuple[np.ndarray, np.ndarray]:
     """Fy and Mz in the rig's SAE axes, with the rig errors that the build states."""
-    zeros = dict.fromkeys(("F0_N", "gamma_0_deg", "alpha_0_deg"), 0.0)  # as declared, unless the fit finds them
+    zeros = dict.fromkeys(
+        ("F0_N", "gamma_0_deg", "alpha_0_deg"), 0.0
+    )  # as declared, unless the fit finds them
     rig = zeros | {name: entry["value"] for name, entry in result["fit"]["rig"].items()}
     assert set(rig) == {*zeros, "camber_skew_deg", "path_radius_m"}
     gamma = np.radians(table["gamma_deg"] + rig["gamma_0_deg"])
