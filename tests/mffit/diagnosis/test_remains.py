@@ -69,7 +69,8 @@ def test_residuals_of_sound_readings_show_no_effect(left):
         numbers, noise = (rng.standard_normal(n) for n in (model.common.shape[1], len(used)))
         chances.append(best_effect(with_residual(left, model.common @ numbers + used * noise)).chance)
     assert np.sum(np.array(chances) < 0.01) <= 3
-    assert 0.25 < np.mean(np.array(chances) < 0.5) < 0.65  # Bonferroni is a little too careful
+    # Bonferroni counts effects that look alike as independent: 0.28 of 240 draws are below 0.5, of 60 with a scatter of 0.06.
+    assert 0.1 < np.mean(np.array(chances) < 0.5) < 0.65
 
 
 def test_an_effect_that_explains_other_residuals_is_no_rival(left):
