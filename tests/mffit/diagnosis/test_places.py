@@ -27,7 +27,7 @@ from mffit.fit.plan import channels_of
 from mffit.points import make_points
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
-from mffit.rig_errors import Faults
+from mffit.rig_errors import RIG_ERRORS, Faults
 
 BY_ID = {effect.id: effect for effect in CATALOG}
 
@@ -356,6 +356,7 @@ THREE = ("load-grip", "camber-stiffness", "loadcell-offset-mz")
 HIDDEN = TYRE.replace(PDY2=float(TYRE["PDY2"]) + 0.25, PKY6=1.3 * float(TYRE["PKY6"]))
 
 
+EXACT_RIG = dict.fromkeys((error.declared.key for error in RIG_ERRORS if error.declared), 0.0)
 SETTINGS = config.load(
     {
         "tyre": {
@@ -364,7 +365,7 @@ SETTINGS = config.load(
             "nominal_load": 1500.0,
             "nominal_pressure": 250.0,
         },
-        "rig": {"path_radius": 1.323},
+        "rig": {"path_radius": 1.323, **EXACT_RIG},
         "model": {"u_coefficients": 0.0},
         "sweep": [{"file": "points.csv"}],
     }
