@@ -141,6 +141,10 @@ def test_the_resolved_configuration_gives_every_number_again(built, result, tmp_
     again = plain(mffit.build(built / "out" / "resolved.toml", tmp_path / "again", with_report=False))
     for content in (result, again):
         content["fit"].pop("seconds")
+    said, said_again = (content["fit"].pop("explanations") for content in (result, again))
+    (of_default,) = set(said) - set(said_again)  # resolved.toml states what was a default
+    assert "the default of u_slip_alignment_N" in of_default
+    assert set(said_again) < set(said)
     found = [row for part in ("spin", "fit") for row in compared(result[part], again[part], part)]
     assert [row.key for row in found if row.size > 0.0] == []
     assert len(found) > 1000
