@@ -426,6 +426,8 @@ def _likely(
         missed = seen.columns(name, smooth, unit)
         return Terms(replace(alone, common=np.hstack([missed, alone.common])), smooth, declared)
 
+    if near is not None and len(near.lengths) != len(seen.inputs):
+        near = None  # one of both fits rejects every reading in which a condition varies
     begin = over(None).most_probable(unit) if near is None else near
     terms = over(begin.lengths)
     return terms, terms.most_probable(unit, begin)

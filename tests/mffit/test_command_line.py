@@ -353,9 +353,12 @@ def next_lines(said: str) -> list[list[str]]:
 
 
 def test_what_a_build_says_to_do_next_does_it(tmp_path, capsys, monkeypatch):
-    """Each line as it is printed, also with a folder of its own; what is explained is read, not built again."""
+    """Each line as it is printed, also with a folder of its own; what is explained is read, not built again.
+
+    The readings contradict the number that is set, so the build is in doubt and diagnose is among the lines.
+    """
     project, out = disc(tmp_path / "my rig").write(), tmp_path / "an other"
-    assert mffit("build", project, "--out", out, "--set", "PCY1=1.3", "--no-report") == 0
+    assert mffit("build", project, "--out", out, "--set", "PDY1=1.0", "--no-report") == 0
     following = next_lines(capsys.readouterr().out)
     assert [words[:2] for words in following] == [["mffit", "diagnose"], ["mffit", "build"]]
     assert mffit(*following[0][1:]) == 0

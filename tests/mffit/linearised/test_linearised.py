@@ -72,6 +72,16 @@ def test_left_out_runs_lie_as_far_off_as_stated(found):
     assert usual == pytest.approx(np.hypot(OFFSET, NOISE), rel=0.35)
 
 
+def test_a_similar_fit_may_reject_every_reading_in_which_a_condition_varies():
+    """The search then starts anew, and finds the noise of what is left."""
+    points = drawn()
+    upright = {"Fy": np.where(points.gamma == 0.0, NOISE, np.nan)}
+    near = linearised(points, simulation(), {"Fy": np.full(len(points), NOISE)}, NUMBERS)
+    again = linearised(points, simulation(), upright, NUMBERS, near=near).channels["Fy"]
+    assert [one.name for one in again.smooth.inputs] == ["alpha", "Fz"]
+    assert again.noise == pytest.approx(NOISE, rel=0.2)
+
+
 def test_a_wheel_that_rolls_backwards_misses_what_one_turned_on_its_rim_misses_forwards():
     """Half a turn of the axes makes one of the other: camber and side force are reversed."""
     ahead = drawn()
