@@ -112,7 +112,7 @@ def test_terminal_page_and_json_say_how_large_it_is(scattered):
 
 
 def test_the_shown_misfit_is_that_of_the_written_file(scattered):
-    """The file holds for the mean of the runs, so its misfit contains their scatter; that of the fit, without it, is said first."""
+    """The file holds for the mean of the runs, so its misfit contains their scatter; that of the fit is said first."""
     result = scattered[0]
     of_file, of_model = (found["Fy"].rmse for found in (result.fit.runs.alone, result.fit.channels))
     assert of_file > 1.2 * of_model
