@@ -246,12 +246,6 @@ def best_effect(left: Left, effects: Sequence[Effect] = CATALOG) -> BestEffect |
     return replace(best, rivals=tuple(near[: NAMED_IN_SENTENCE - 1]))
 
 
-def is_explained(fitted: Fitted, linear: LinearisedFit) -> bool:
-    """Whether an effect of rig or environment explains what a fit leaves, beyond the model error that remains with it."""
-    found = best_effect(Left.of(fitted, linear))
-    return found is not None and found.significant and found.best.effect.kind != "tyre"
-
-
 def _weighed(left: Left, step: OneStep, tried: int) -> BestEffect:
     """An effect with its evidence in addition to model error and scatter of runs, if chance does not explain it."""
     found = BestEffect(step, (), tried)

@@ -19,7 +19,7 @@ from mffit.fit.fitted import left_by, with_errors_of
 from mffit.fit.influences.confounding import confounding_sentence, confoundings
 from mffit.fit.influences.modelled import at_temperature, between_runs
 from mffit.fit.influences.nuisance_choice import at_reference
-from mffit.fit.influences.with_nuisances import Explains, NuisanceFit, fit_with_nuisances
+from mffit.fit.influences.with_nuisances import NuisanceFit, fit_with_nuisances
 from mffit.fit.plan import FitPlan
 from mffit.fit.polish import refitted
 from mffit.fit.problem import FitProblem
@@ -60,19 +60,18 @@ def fit(
     base: Tyre | None = None,
     progress: Progress = silent,
     steps: Mapping[str, Points] = MappingProxyType({}),
-    explains: Explains = lambda fitted, left: False,
 ) -> FitResult:
     """The fit of MF 6.2 to raw points, angles as read, with turn slip on; directly measured values are held.
 
     ``parts`` are the points' odd and even parts; ``epsilon_gamma`` of ``measured`` is None on a flat track; ``base`` supplies
     the values that are not fitted; ``steps`` are samples of step tests, by the stepped setting: sideslip angle or longitudinal
-    slip; ``explains`` asks for known errors behind what the fit leaves.
+    slip.
 
     Raises InputError if there are fewer points than coefficients, or a sweep contradicts all others beyond plausibility.
     """
     began = time.perf_counter()
     hand, known, radii, turning, start, plan, problem = begin(config, points, measured, base)
-    found, left_by_formula, doubts = _fitted_and_judged(config, problem, start, plan, progress, explains)
+    found, left_by_formula, doubts = _fitted_and_judged(config, problem, start, plan, progress)
     fitted, full = found.plain, found.full
     full = with_errors_of(full, left_by_formula)
     if found.at_temperature:
@@ -164,19 +163,14 @@ def fit(
 
 
 def _fitted_and_judged(
-    config: Config,
-    problem: FitProblem,
-    start: Mapping[str, float],
-    plan: FitPlan,
-    progress: Progress,
-    explains: Explains,
+    config: Config, problem: FitProblem, start: Mapping[str, float], plan: FitPlan, progress: Progress
 ) -> tuple[NuisanceFit, LinearisedFit, tuple[Doubt, ...]]:
     """The fits to all points, the linear model of the full fit's residuals, and the sweeps that contradict the others.
 
     An InputError ends the build if a sweep contradicts the others beyond plausibility.
     """
 
-    found = fit_with_nuisances(config, problem, start, plan, progress, explains)
+    found = fit_with_nuisances(config, problem, start, plan, progress)
     progress(PREDICTING)
 
     def mostly_rejected(name: str, rows: np.ndarray) -> bool:

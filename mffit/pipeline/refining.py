@@ -7,7 +7,6 @@ import numpy as np
 from mffit import fit as fitting
 from mffit.comparison.characteristics import characteristics
 from mffit.config import Config
-from mffit.diagnosis.remains import is_explained
 from mffit.fit import FitResult
 from mffit.fit.coefficients import with_u
 from mffit.measured import Measured
@@ -35,7 +34,7 @@ def fit_and_measure(
     points = reading.points
 
     def fit(measured: Measured) -> FitResult:
-        return fitting.fit(config, points, parts, measured, base, progress, reading.steps, is_explained)
+        return fitting.fit(config, points, parts, measured, base, progress, reading.steps)
 
     fitted = fit(before)
     sound = without_outliers(points, fitted)

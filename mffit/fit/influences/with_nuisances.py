@@ -1,6 +1,6 @@
 """The fit of the plain file, and the fit with all chosen influences of :mod:`mffit.fit.influences.nuisances`."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,9 +18,6 @@ from mffit.linearised import LinearisedFit
 from mffit.linearised.components import CERTAIN_EVIDENCE
 from mffit.progress import FITTING, FITTING_AGAIN, Progress
 from mffit.rig import Simulation
-
-Explains = Callable[[Fitted, LinearisedFit], bool]
-"""Whether a known error of rig or environment explains what a fit leaves, beyond the model error of its linear model."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,17 +38,9 @@ class NuisanceFit:
 
 
 def fit_with_nuisances(
-    config: Config,
-    problem: FitProblem,
-    start: Mapping[str, float],
-    plan: FitPlan,
-    progress: Progress,
-    explains: Explains,
+    config: Config, problem: FitProblem, start: Mapping[str, float], plan: FitPlan, progress: Progress
 ) -> NuisanceFit:
-    """The first fit without outliers, then the choice of influences, then the joint fit with the chosen ones.
-
-    What looks like a model error and is not proven may be a known error: held asymmetries would then hide it.
-    """
+    """The first fit without outliers, then the choice of influences, then the joint fit with the chosen ones."""
     progress(FITTING)
     fitted, problem, left = without_outliers(first_fit(problem, start, plan), problem)
     one_mount = len(np.unique(problem.points.mount)) < 2
@@ -63,9 +52,6 @@ def fit_with_nuisances(
         return found
     left = left_by(found.full, near=left)
     if left.is_exact or (not problem.points.one_sided and left.evidence_of(unseen) > CERTAIN_EVIDENCE):
-        return replace(found, left=left)
-    is_proven = any(channel.is_proven for channel in left.channels.values())
-    if not is_proven and explains(found.full, left):
         return replace(found, left=left)
     plan = plan.holding(unseen, UNSEEN)
     symmetric = {name: plan.expected.get(name, problem.value(name)) for name in unseen}
