@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mffit.constants import CERTAIN_SIGMA, PREDICTION_FALSE_ALARM
+from mffit.constants import CERTAIN_SIGMA, FALSE_ALARM
 from mffit.linearised import constants
 from mffit.linearised.mixed import Mixed, Variances
 from mffit.linearised.search import ParameterSearch, SearchedParameter, flat, normal
@@ -18,8 +18,8 @@ from tir.frozen import ReadOnlyArrays
 
 CERTAIN_EVIDENCE = 0.5 * CERTAIN_SIGMA**2
 """Log evidence that proves a model error, and a condition over which it changes."""
-LIKELY_EVIDENCE = -math.log(PREDICTION_FALSE_ALARM)
-"""Log evidence of a model error that chance gives any channel of an exact formula in one of a hundred fits at most."""
+LIKELY_EVIDENCE = -math.log(FALSE_ALARM)
+"""Log evidence of a model error that chance hardly gives a channel whose formula is exact."""
 
 
 @dataclass(frozen=True, slots=True)
