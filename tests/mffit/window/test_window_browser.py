@@ -386,6 +386,7 @@ def test_hostile_names_do_no_harm(page, result, tmp_path):
 
 def enter(browser: Any, address: str) -> str:
     """Open a window by an address that lets one browser in; returns the address of its page."""
+    console_errors(browser)  # of other tests
     browser.get(address)
     until(lambda: "/enter/" not in browser.current_url and browser.find_elements("id", "status"))
     return browser.current_url.partition("#")[0]
@@ -449,7 +450,6 @@ def test_a_folder_dropped_into_the_page_is_stored_once_agreed(browser, original,
     shutil.copy(original.parent / "sideslip_900.csv", tmp_path / "run")
     shutil.copy(original.parent / "camber_900.csv", tmp_path / "run" / "deep")
     (tmp_path / "run" / "photo.jpg").write_bytes(b"jpg")
-    console_errors(browser)  # of other tests
     with served(Opened(folder=RecordingsFolder(tmp_path / "empty"))) as address:
         enter(browser, address)
         until(lambda: "No recordings here yet" in browser.find_element("id", "status").text)
@@ -696,7 +696,6 @@ def test_a_recording_dropped_on_an_open_project_is_shown_and_added(browser, tyre
     opened = fitted(tyre_toml, result)
     with served(opened) as address:
         home = enter(browser, address)
-        console_errors(browser)  # of other tests
         drop(browser, tmp_path / "rolls_backward.csv")
         until(lambda: ask(browser, "document.getElementById('store').open"))
         press(browser, "#store button.main")
