@@ -263,8 +263,8 @@ class Tyre(TyreRecord):
 
         ``f = tyre.array_function(jax.numpy)`` takes Fz, alpha, gamma, kappa, phi_t, Vx, p (ISO-W, SI, radians) in this order or
         by name, real scalars or arrays that broadcast; it refuses what a call of the tyre refuses. It goes through ``jit``,
-        ``vmap`` and ``grad``. An input left out is as in a call, a factor that of the file. Derivatives are finite everywhere:
-        where one is infinite, it is 0.
+        ``vmap`` and ``grad``. An input that is left out has the value that it has in a call, and a factor that of the file.
+        Derivatives are finite everywhere: where one is infinite, it is 0.
 
         Parameters
         ----------

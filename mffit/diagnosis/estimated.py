@@ -107,7 +107,7 @@ def _standard_errors(
     values = np.append([n.start for n in numbers], np.zeros(len(beside.names)))
     spread = np.append([n.spread for n in numbers], np.ones(len(beside.names)))
     held = frozenset(beside.names[: len(beside.names) - freed])
-    priors = Numbers(tuple(names), values, np.diag(none), none, values, spread, held)
+    priors = Numbers.beforehand(names, values, values, spread, held)
     covariance = numbers_told(told, priors).covariance
     variance = np.sum((unit @ covariance) * unit, axis=1)
     return dict(zip(names, np.sqrt(np.maximum(variance, 0.0)).tolist(), strict=True))

@@ -173,7 +173,7 @@ class Diagnosis(ReadOnlyArrays, Brief):
     def steps(self) -> tuple[GapStep, ...]:
         """The gap as given, with one repaired effect after the other, and with the coefficients estimated with them.
 
-        Rig errors that were estimated with them are no step of their own.
+        Rig errors that were estimated together with them do not have a step of their own.
         """
         check = self.validation
         found = [GapStep("given", "as given", self.gap_examined, check.gap_before)]

@@ -8,7 +8,7 @@ FUNCTIONS = Count(300, "-", "Most functions of the model error of a channel.")
 LEAST_SHARE = Real(
     0.01,
     "-",
-    "Variance of a function, over that of a constant at the shortest lengths, below which it is left out.",
+    "Variance of a function, over that of a constant at the lengths for which functions are chosen, below which it is left out.",
 )
 CHOSEN_FOR = Real(0.5, "-", "Lengths, over the likely ones, for which the functions are chosen.")
 POINTS_EXAMINED = Count(

@@ -95,7 +95,7 @@ class LinearisedChannel(ReadOnlyArrays):
         return likeness, turned(points, self.name)[:, None] * functions
 
     def told_beside(self, model: Mixed, columns: np.ndarray) -> FurtherColumns:
-        """What residuals of a ``model`` tell of further columns (n, j) beside the model error, with no other common number."""
+        """What the residuals of a ``model`` tell of ``columns`` (n, j), which replace its numbers other than the model error."""
         m = len(self.missed)
         given = self.variances._replace(common=self.variances.common[:m])
         return replace(model, common=model.common[:, :m]).further(given, columns)
@@ -124,11 +124,8 @@ class LinearisedChannel(ReadOnlyArrays):
             for one, length in zip(self.smooth.inputs, self.components.lengths, strict=True)
         )
         smooth = SmoothFunctions.over(self.smooth.inputs, self.seen.sign)
-        of_numbers = self.model.common[:, len(self.missed) :]
-        model = replace(
-            self.model, common=np.hstack([self.seen.columns(self.name, smooth, self.unit), of_numbers])
-        )
-        terms = Terms(model, smooth, np.zeros(of_numbers.shape[1]))
+        model = self._with(smooth, self.model)
+        terms = Terms(model, smooth, np.zeros(self.turn.shape[1]))
         given = terms.variances(replace(self.components, lengths=lengths))
         (found,) = self._left_out(model, given, [rows])
         return found
@@ -156,9 +153,12 @@ class LinearisedChannel(ReadOnlyArrays):
         known = zip(inputs, self.components.lengths, strict=True)
         lengths = [length if one.is_held else 0.0 for one, length in known]
         smooth = SmoothFunctions.over(inputs, self.seen.sign, lengths)
-        rig = self.alone.model.common[:, len(self.missed) :]
-        common = np.hstack([self.seen.columns(self.name, smooth, self.unit), rig])
-        return replace(self.alone, model=replace(self.alone.model, common=common), smooth=smooth)
+        return replace(self.alone, model=self._with(smooth, self.alone.model), smooth=smooth)
+
+    def _with(self, smooth: SmoothFunctions, model: Mixed) -> Mixed:
+        """A ``model`` of this channel with other functions of the model error."""
+        others = replace(model, common=model.common[:, len(self.missed) :])
+        return self.seen.with_functions(others, self.name, smooth, self.unit)
 
     @cached_property
     def proof(self) -> float:
@@ -345,9 +345,10 @@ class _LookedAt(NamedTuple):
     settings: np.ndarray  #: (n, d) the conditions
     along: np.ndarray  #: (n,) as :func:`mffit.linearised.inputs.along`
 
-    def columns(self, name: str, smooth: SmoothFunctions, unit: np.ndarray) -> np.ndarray:
-        """Values (n, m) of the functions in the readings of a channel, over ``unit`` (n,)."""
-        return np.asarray((turned(self.points, name) / unit)[:, None] * smooth.columns(self.settings))
+    def with_functions(self, model: Mixed, name: str, smooth: SmoothFunctions, unit: np.ndarray) -> Mixed:
+        """A ``model`` of readings of a channel over ``unit`` (n,) with the weights of the functions before its common numbers."""
+        functions = (turned(self.points, name) / unit)[:, None] * smooth.columns(self.settings)
+        return replace(model, common=np.hstack([functions, model.common]))
 
 
 def unit_of(points: Points, channel: str, sigma: np.ndarray) -> np.ndarray:
@@ -423,8 +424,7 @@ def _likely(
 
     def over(lengths: Sequence[float] | None) -> Terms:
         smooth = SmoothFunctions.over(seen.inputs, seen.sign, lengths)
-        missed = seen.columns(name, smooth, unit)
-        return Terms(replace(alone, common=np.hstack([missed, alone.common])), smooth, declared)
+        return Terms(seen.with_functions(alone, name, smooth, unit), smooth, declared)
 
     if near is not None and len(near.lengths) != len(seen.inputs):
         near = None  # one of both fits rejects every reading in which a condition varies

@@ -80,7 +80,9 @@ class SmoothFunctions(ReadOnlyArrays):
         return size, slope
 
     def left_out(self, pair: np.ndarray, lengths: np.ndarray) -> float:
-        """Variance that the functions leave out of the difference between two conditions (2, d), over that of the model error.
+        """Part of the variance of the difference between two conditions (2, d) that the functions cannot describe.
+
+        It is relative to the variance of the model error.
 
         A force over slip may bend faster around zero, where bristles begin to slide, than readings beside it can show.
         """

@@ -29,7 +29,7 @@ from tir.frozen import ReadOnlyArrays
 
 DIRECTIONS = {"forward": 1, "backward": -1, "1": 1, "+1": 1, "-1": -1}
 UNCERTAINTIES = {u_column(name): column(name) for name in CHANNELS}
-"""By column of standard uncertainties, that of the readings."""
+"""Column of the readings, by column of their standard uncertainties."""
 MAY_BE_BLANK = frozenset({"iteration", "point", "time_s", *UNCERTAINTIES})
 NUMBER_WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
 
@@ -67,7 +67,7 @@ class _Source(NamedTuple):
 
     @property
     def unit(self) -> str:
-        """The unit that ``tyre.toml`` names, else that of the file; "" if neither states one."""
+        """The unit by ``tyre.toml``, or else by the file; "" if neither states one."""
         named = None if self.mapped is None else self.mapped.unit
         return named or self.raw.unit(self.heading)
 

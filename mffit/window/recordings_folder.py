@@ -103,7 +103,7 @@ class RecordingsFolder:
 
     @formats.reading_once()
     def recognised(self, choice: Mapping[str, Any]) -> dict[str, Any]:
-        """What the files that are used say of tyre and rig, with the columns as chosen; ``known`` is False if they say nothing.
+        """What the ticked files say of tyre and rig, with the columns as chosen; ``known`` is False if they say nothing.
 
         ``problems`` are those of these files, ``remarks`` those of each group that the choice leaves.
         """
