@@ -20,6 +20,8 @@ from tir.frozen import ReadOnlyArrays
 LEAST = float(-np.log(constants.LEAST_SHARE))
 WIDEST = float(np.sqrt(5.0 * np.expm1(LEAST / 3.0)))
 """Wave number, in radians per length scale, beyond which a basis function's variance is negligible."""
+SINGULAR = 1e-9
+"""Added to correlations, so that those of close settings can be inverted."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,18 +81,24 @@ class SmoothFunctions(ReadOnlyArrays):
             slope[:, i] = (by_length - share @ by_length)[self.orders[:, i]]
         return size, slope
 
-    def left_out(self, pair: np.ndarray, lengths: np.ndarray) -> float:
-        """Part of the variance of the difference between two conditions (2, d) that the functions cannot describe.
+    def unseen(self, pair: np.ndarray, lengths: np.ndarray) -> float:
+        """Variance, over that of the model error, of its difference between two conditions (2, d) that differ in one of them.
 
-        It is relative to the variance of the model error.
-
-        A force over slip may bend faster around zero, where bristles begin to slide, than readings beside it can show.
+        All that the settings of that condition, a spacing apart, can tell is taken as known: a force over slip may bend faster
+        around zero, where bristles begin to slide, than readings beside it show. Nothing is known where the others are untested.
         """
-        scaled = [one.stretched(values) for one, values in zip(self.inputs, pair.T, strict=True)]
-        far = np.sqrt(5.0) * np.abs([np.ptp(values) for values in scaled]) / lengths
-        alike = float(np.prod((1.0 + far + far**2 / 3.0) * np.exp(-far)))
-        known = float(np.exp(self.log_variance(lengths)[0]) @ np.ptp(self.columns(pair), axis=0) ** 2)
-        return max(2.0 * (1.0 - alike) - known, 0.0)
+        differs = int(np.argmax(np.ptp(pair, axis=0) / lengths))
+        one = self.inputs[differs]
+        settings = np.linspace(one.lower, one.upper, round(one.width / one.spacing) + 1)
+        at = one.stretched(np.append(pair[:, differs], settings))
+        far = np.sqrt(5.0) * np.abs(at[:, None] - at) / lengths[differs]
+        alike = (1.0 + far + far**2 / 3.0) * np.exp(-far) + SINGULAR * np.eye(len(at))
+        change = alike[1] - alike[0]
+        told = change[2:] @ np.linalg.solve(alike[2:, 2:], change[2:])
+        others = pair[:1].copy()
+        others[0, differs] = one.lower
+        (likeness,) = self.likeness(others, lengths)
+        return max(float(change[1] - change[0] - likeness**2 * told), 0.0)
 
     def faded(self, settings: np.ndarray, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Correlation (n,) with the model error at the nearest tested settings (n, d), and the functions (n, m) times it."""

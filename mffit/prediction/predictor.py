@@ -84,9 +84,10 @@ class MissedChannel(ReadOnlyArrays):
         """
         likeness, functions = self._functions(settings)
         ((one, other),) = self._rows(functions, slopes)
-        left_out = self.smooth.left_out(settings, np.array(self.components.lengths)) if at_zero else 0.0
-        unlike = (np.sum(1.0 - likeness**2) + left_out) * self.components.missed**2
-        return float(np.sqrt(np.sum((one - other) ** 2) + unlike))
+        unlike = np.sum(1.0 - likeness**2)
+        if at_zero:
+            unlike = self.smooth.unseen(settings, np.array(self.components.lengths))
+        return float(np.sqrt(np.sum((one - other) ** 2) + unlike * self.components.missed**2))
 
     def _rows(self, functions: np.ndarray, *slopes: np.ndarray) -> list[np.ndarray]:
         """Roots (n, r) of the covariance of forces at conditions with these ``functions`` (n, m), for each ``slopes`` (n, k)."""

@@ -25,6 +25,7 @@ from harness import shares
 
 import mffit
 import tir
+from mffit.comparison.characteristics import characteristics
 from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.rig_errors import words_of
@@ -72,6 +73,13 @@ NAMES = {
     "turning": "F0_direction_N", "load_odd": "load_camber_odd", "play": "backlash_deg", "give": "compliance_deg_per_Nm",
     "skew": "camber_skew_deg", "load_camber": "load_camber",
 }  # fmt: skip
+SLOPES = {
+    "C_alpha_N_per_rad": (0, "alpha"), "C_gamma_N_per_rad": (0, "gamma"), "C_Mz_alpha_Nm_per_rad": (1, "alpha"),
+    "C_phit_Nm": (0, "phi_t"),
+}  # fmt: skip
+"""Channel and slip of slopes at zero."""
+STILL = {"alpha": np.zeros(1), "gamma": np.zeros(1), "phi_t": 0.0}
+SMALL = 1e-4
 WORLDS = ["brush on a disc", "brush on a belt", "term on a disc", "term on a belt"]
 WORLDS += [f"{world}, {what}" for world in WORLDS[:2] for what in (*SPOILT, *PLANTED)]
 
@@ -207,6 +215,7 @@ def one(job: harness.Job) -> Foreign:
             out.note("eps_gamma", direct.value, direct.u, tyre.reduction)
         if not fault:
             out.predicted = _predicted(folder / "out", tyre, load, rig, disc, rng)
+            _slopes(out, result, tyre, load, disc)
             for n, row in result.fit.coefficients.items() if isinstance(tyre, Bent) else ():
                 if row.stderr and not row.at_bound and row.status == "fitted":
                     out.note(n, row.value, row.stderr, float(tyre.tyre[n]))
@@ -236,6 +245,20 @@ def _predicted(
     return out
 
 
+def _slopes(out: Foreign, result: Any, tyre: Any, load: float, disc: bool) -> None:
+    """Notes the slopes at zero of the file on the road, with their true values."""
+    known = {"known": result.fit.posterior, "predictor": result.prediction}
+    found = characteristics(result.tyres[result.fitted], load, turn_slip=disc, **known)
+    for key, (channel, over) in SLOPES.items():
+        if key in found:
+            ends = [
+                tyre.forces(**{**STILL, "Fz": np.array([load]), over: SMALL * np.array([x])})
+                for x in (-1.0, 1.0)
+            ]
+            true = float(ends[1][channel][0] - ends[0][channel][0]) / (2.0 * SMALL)
+            out.note(key, found[key].value, found[key].u, true)
+
+
 def page(world: str, rows: list[Foreign]) -> Iterator[str]:
     draws, refused = harness.sound(rows)
     yield f"\n## {world}: {len(rows)} builds, {len(refused)} refused"
@@ -253,7 +276,7 @@ def page(world: str, rows: list[Foreign]) -> Iterator[str]:
             f"{key}: inside {np.mean(share):.1%}, error {rms(error):.3g}, half width over error {ratio:.2f}"
             f", over the ideal {ratio / SAFE:.2f}"
         )
-    pulls = np.array([z for d in draws for name, z in d.pulls.items() if name != "eps_gamma"])
+    pulls = np.array([z for d in draws for name, z in d.pulls.items() if name not in {"eps_gamma", *SLOPES}])
     if len(pulls):
         share = harness.percent(np.abs(pulls) < SAFE)
         yield f"coefficients within 95 %: {share} of {len(pulls)}, median {np.median(np.abs(pulls)):.2f} u"

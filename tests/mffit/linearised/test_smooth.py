@@ -117,15 +117,29 @@ def test_functions_are_chosen_for_the_likely_lengths():
     assert again.orders[:, 1:].max() < first.orders[:, 1:].max()
 
 
-def test_a_slope_at_zero_slip_has_a_part_that_functions_leave_out():
-    """Most at zero, where a slip is stretched; the functions describe most of a slope over the load."""
+def test_what_no_setting_shows_of_a_difference_is_that_of_drawn_functions():
+    """Of functions with the Matern covariance, what a regression on their values at all settings leaves of a difference."""
+    gamma, length, pair = Input("gamma", 0.0, 0.08, 0.02), 0.05, np.array([-1e-3, 1e-3])
+    at = np.append(pair, np.arange(0.0, 0.081, 0.02))
+    far = np.sqrt(5.0) * np.abs(at[:, None] - at) / length
+    alike = (1.0 + far + far**2 / 3.0) * np.exp(-far)
+    drawn = (
+        np.random.default_rng(1).standard_normal((20_000, len(at)))
+        @ np.linalg.cholesky(alike + 1e-12 * np.eye(len(at))).T
+    )
+    change = drawn[:, 1] - drawn[:, 0]
+    told = drawn[:, 2:] @ np.linalg.lstsq(drawn[:, 2:], change, rcond=None)[0]
+    smooth = SmoothFunctions.over((gamma, LOAD))
+    settings, lengths = np.column_stack([pair, [2000.0, 2000.0]]), np.array([length, 1500.0])
+    assert smooth.unseen(settings, lengths) == pytest.approx(np.var(change - told), rel=0.03)
+    far_from_any_load = settings + [0.0, 20_000.0]
+    assert smooth.unseen(far_from_any_load, lengths) == pytest.approx(np.var(change), rel=0.03)
+    assert smooth.unseen(np.column_stack([[0.02, 0.06], [2000.0] * 2]), lengths) < 1e-6
+
+
+def test_a_slope_at_zero_slip_is_known_less_than_one_beside():
+    """A force over slip may bend fastest around zero, where its readings are as far apart as beside it."""
     alpha, lengths = Input("alpha", -0.2, 0.2, 0.4 / 12.0), np.array([0.05, 1500.0])
     smooth, step = SmoothFunctions.over((alpha, LOAD)), np.array([[-1e-3, 0.0], [1e-3, 0.0]])
-    at_zero, aside = (smooth.left_out(step + np.array([x, 2000.0]), lengths) for x in (0.0, 0.15))
-    whole = 5.0 / 3.0 * (2e-3 / 0.05) ** 2  # slope of a Matern 5/2 function without the stretch
-    assert at_zero > 2.0 * whole
-    assert aside < 0.5 * whole
-    assert (
-        smooth.left_out(np.array([[0.1, 1990.0], [0.1, 2010.0]]), lengths)
-        < 0.5 * 5.0 / 3.0 * (20.0 / 1500.0) ** 2
-    )
+    at_zero, aside = (smooth.unseen(step + np.array([x, 2000.0]), lengths) for x in (0.0, 0.4 / 3.0))
+    assert at_zero > 5.0 * aside
