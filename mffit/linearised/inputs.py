@@ -55,12 +55,17 @@ class Input:
 
     def stretched(self, values: np.ndarray) -> np.ndarray:
         """Values of a swept slip on a scale with the same ends that is stretched around zero; others as they are."""
-        if self.name not in SLIPS or self.is_held:
+        if not self.is_stretched:
             return values
         unit = self.width / constants.DIVISIONS_OF_A_SWEEP
         low, high = np.arcsinh(self.lower / unit), np.arcsinh(self.upper / unit)
         out: np.ndarray = self.lower + (np.arcsinh(values / unit) - low) / (high - low) * self.width
         return out
+
+    @property
+    def is_stretched(self) -> bool:
+        """Whether it is a slip that sweeps move."""
+        return self.name in SLIPS and not self.is_held
 
     @property
     def is_held(self) -> bool:

@@ -84,8 +84,9 @@ class SmoothFunctions(ReadOnlyArrays):
     def unseen(self, pair: np.ndarray, lengths: np.ndarray) -> float:
         """Variance, over that of the model error, of its difference between two conditions (2, d) that differ in one of them.
 
-        All that the settings of that condition, a spacing apart, can tell is taken as known: a force over slip may bend faster
-        around zero, where bristles begin to slide, than readings beside it show. Nothing is known where the others are untested.
+        All that readings at the settings of that condition, a spacing apart, show of it is taken as known. That is everything
+        but over a swept slip: a force may bend faster around zero, where bristles begin to slide, than readings beside it show.
+        Nothing is known where the other conditions are untested.
         """
         differs = int(np.argmax(np.ptp(pair, axis=0) / lengths))
         one = self.inputs[differs]
@@ -94,11 +95,13 @@ class SmoothFunctions(ReadOnlyArrays):
         far = np.sqrt(5.0) * np.abs(at[:, None] - at) / lengths[differs]
         alike = (1.0 + far + far**2 / 3.0) * np.exp(-far) + SINGULAR * np.eye(len(at))
         change = alike[1] - alike[0]
-        told = change[2:] @ np.linalg.solve(alike[2:, 2:], change[2:])
+        whole = known = change[1] - change[0]
+        if one.is_stretched:
+            known = change[2:] @ np.linalg.solve(alike[2:, 2:], change[2:])
         others = pair[:1].copy()
         others[0, differs] = one.lower
         (likeness,) = self.likeness(others, lengths)
-        return max(float(change[1] - change[0] - likeness**2 * told), 0.0)
+        return max(float(whole - likeness**2 * known), 0.0)
 
     def faded(self, settings: np.ndarray, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Correlation (n,) with the model error at the nearest tested settings (n, d), and the functions (n, m) times it."""

@@ -118,23 +118,25 @@ def test_functions_are_chosen_for_the_likely_lengths():
 
 
 def test_what_no_setting_shows_of_a_difference_is_that_of_drawn_functions():
-    """Of functions with the Matern covariance, what a regression on their values at all settings leaves of a difference."""
-    gamma, length, pair = Input("gamma", 0.0, 0.08, 0.02), 0.05, np.array([-1e-3, 1e-3])
-    at = np.append(pair, np.arange(0.0, 0.081, 0.02))
+    """Of functions with the Matern covariance, what a regression on their values at all settings leaves of a difference.
+
+    Beyond all loads the difference itself; at two settings, and over a condition that is no slip, nothing.
+    """
+    alpha, length, pair = Input("alpha", -0.12, 0.12, 0.02), 0.05, np.array([-2e-3, 1e-3])
+    at = alpha.stretched(np.append(pair, np.linspace(-0.12, 0.12, 13)))
     far = np.sqrt(5.0) * np.abs(at[:, None] - at) / length
     alike = (1.0 + far + far**2 / 3.0) * np.exp(-far)
-    drawn = (
-        np.random.default_rng(1).standard_normal((20_000, len(at)))
-        @ np.linalg.cholesky(alike + 1e-12 * np.eye(len(at))).T
-    )
+    root = np.linalg.cholesky(alike + 1e-12 * np.eye(len(at)))
+    drawn = np.random.default_rng(1).standard_normal((20_000, len(at))) @ root.T
     change = drawn[:, 1] - drawn[:, 0]
-    told = drawn[:, 2:] @ np.linalg.lstsq(drawn[:, 2:], change, rcond=None)[0]
-    smooth = SmoothFunctions.over((gamma, LOAD))
-    settings, lengths = np.column_stack([pair, [2000.0, 2000.0]]), np.array([length, 1500.0])
-    assert smooth.unseen(settings, lengths) == pytest.approx(np.var(change - told), rel=0.03)
-    far_from_any_load = settings + [0.0, 20_000.0]
-    assert smooth.unseen(far_from_any_load, lengths) == pytest.approx(np.var(change), rel=0.03)
+    left = change - drawn[:, 2:] @ np.linalg.lstsq(drawn[:, 2:], change, rcond=None)[0]
+    smooth, lengths = SmoothFunctions.over((alpha, LOAD)), np.array([length, 1500.0])
+    settings = np.column_stack([pair, [2000.0, 2000.0]])
+    assert smooth.unseen(settings, lengths) == pytest.approx(np.var(left), rel=0.04)
+    assert smooth.unseen(settings + np.array([0.0, 20_000.0]), lengths) == pytest.approx(np.var(change), rel=0.04)
     assert smooth.unseen(np.column_stack([[0.02, 0.06], [2000.0] * 2]), lengths) < 1e-6
+    camber = SmoothFunctions.over((Input("gamma", -0.12, 0.12, 0.02), LOAD))
+    assert camber.unseen(settings, lengths) < 1e-6
 
 
 def test_a_slope_at_zero_slip_is_known_less_than_one_beside():
