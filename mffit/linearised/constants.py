@@ -33,6 +33,16 @@ USUAL_TEMPERATURES = Series(
     "%",
     "Percentiles of the temperature over which a prediction averages that does not state it.",
 )
+SPACINGS_OF_AN_END = Real(
+    3.0,
+    "-",
+    "Depth of an end of a swept range that is predicted from the rest, in shortest lengths: a quarter of one side.",
+)
+FREE_OVER_KNOWN = Real(
+    100.0,
+    "-",
+    "Standard deviation of a number without a prior over that which all readings leave, if some are left out.",
+)
 ROOM = Real(
     0.15, "-", "Range beyond the tested one over which the functions run, so that their slope is free there."
 )

@@ -12,6 +12,7 @@ from mffit.points import Points, levels
 from mffit.points.clock import goes_both_ways
 from mffit.points.constants import CORE
 from mffit.quantities import CONDITIONS, REVERSED_BY_HALF_A_TURN
+from tir.constants import SMALLEST_LOAD
 
 LEVELS: Mapping[str, levels.LevelKind] = {
     "alpha": levels.SIDESLIP,
@@ -61,6 +62,17 @@ class Input:
         low, high = np.arcsinh(self.lower / unit), np.arcsinh(self.upper / unit)
         out: np.ndarray = self.lower + (np.arcsinh(values / unit) - low) / (high - low) * self.width
         return out
+
+    def beyond(self, values: np.ndarray) -> np.ndarray:
+        """Signed distance (n,) from the tested range, 0 inside and where it is NaN; of the load, the logarithm of the ratio."""
+        near = np.clip(values, self.lower, self.upper)
+        if self.name == "Fz":
+            return np.asarray(np.log(np.maximum(values, SMALLEST_LOAD) / near))
+        return np.asarray(np.nan_to_num(values - near))
+
+    def size(self, values: np.ndarray) -> np.ndarray:
+        """What errors beyond the range are over, (n,): the load itself, else 1."""
+        return np.maximum(values, SMALLEST_LOAD) if self.name == "Fz" else np.ones(len(values))
 
     @property
     def is_stretched(self) -> bool:

@@ -100,23 +100,26 @@ class SmoothFunctions(ReadOnlyArrays):
             known = change[2:] @ np.linalg.solve(alike[2:, 2:], change[2:])
         others = pair[:1].copy()
         others[0, differs] = one.lower
-        (likeness,) = self.likeness(others, lengths)
-        return max(float(whole - likeness**2 * known), 0.0)
+        (beyond,) = self.beyond(others, lengths)
+        return max(float(whole - np.exp(-beyond) * known), 0.0)
 
     def faded(self, settings: np.ndarray, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Correlation (n,) with the model error at the nearest tested settings (n, d), and the functions (n, m) times it."""
-        likeness = self.likeness(settings, lengths)
-        return likeness, likeness[:, None] * self.columns(settings)
+        """:meth:`beyond` (n,) at ``settings`` (n, d), and the functions (n, m), which fade with it.
 
-    def likeness(self, at: np.ndarray, lengths: np.ndarray) -> np.ndarray:
-        """Correlation (n,) of the model error at conditions (n, d) with that at the nearest tested ones; 1 inside the range.
+        The fading model error is exp(-beyond/2) of that at the nearest tested settings. How far the tyre may be from it grows
+        without end: its variance is ``beyond`` times that of the model error, as that of a slope that nothing tested limits.
+        """
+        beyond = self.beyond(settings, lengths)
+        return beyond, np.exp(-0.5 * beyond)[:, None] * self.columns(settings)
+
+    def beyond(self, at: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+        """Squared distance (n,) of conditions (n, d) from the nearest tested ones, in lengths; 0 inside the range.
 
         A condition that is NaN counts as tested.
         """
         lower, upper = ([getattr(one, end) for one in self.inputs] for end in ("lower", "upper"))
-        beyond = np.nan_to_num(at - np.clip(at, lower, upper)) / lengths
-        found: np.ndarray = np.exp(-0.5 * np.sum(beyond**2, axis=1))
-        return found
+        distance = np.nan_to_num(at - np.clip(at, lower, upper)) / lengths
+        return np.asarray(np.sum(distance**2, axis=1))
 
 
 def _waves(one: Input, values: np.ndarray, order: np.ndarray) -> np.ndarray:

@@ -15,6 +15,7 @@ from mffit.constants import COVERAGE_FACTOR_95
 from mffit.least_squares import root
 from mffit.linearised import LinearisedChannel, LinearisedFit
 from mffit.linearised.components import Components
+from mffit.linearised.ends import growths
 from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.numbers import Numbers
@@ -34,7 +35,12 @@ class Remaining(NamedTuple):
 
     load: np.ndarray
     """Of the error at the lowest tested load; it falls with the load, and its uncertainty with it."""
-    slip: np.ndarray  #: correlation with the error of the tested longitudinal slip
+    slip: np.ndarray  #: :func:`tir.correction.slip_beyond` of the tested longitudinal slip
+
+    @property
+    def share(self) -> np.ndarray:
+        """Share (n,) of the model error that is left, by both."""
+        return np.asarray(self.load * np.exp(-self.slip))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,6 +55,7 @@ class MissedChannel(ReadOnlyArrays):
     """(m + k, r): root @ root.T is the covariance of the weights and of changes of coefficients and calibrations."""
     noise: float  #: standard deviation of the noise of a typical reading [unit of the channel]
     size: float  #: rms model error at the readings [unit of the channel]
+    growth: np.ndarray  #: (d, 2) as :func:`mffit.linearised.ends.growths`
 
     @property
     def covariance(self) -> np.ndarray:
@@ -66,11 +73,12 @@ class MissedChannel(ReadOnlyArrays):
         d), ``of_tyre`` (k,) is the mask of the coefficients, ``left`` what remains of the model error where nothing was
         tested.
         """
-        likeness, functions = self._functions(settings)
-        likeness, functions = likeness * left.slip, functions * (left.load * left.slip)[:, None]
+        functions = self._functions(settings)[1] * left.share[:, None]
         rows = self._rows(functions, slopes * of_tyre, slopes)
         mean, reading = (np.sum(one**2, axis=1) for one in rows)
-        unlike = (1.0 - likeness**2) * (left.load * self.components.missed) ** 2
+        unlike = 2.0 * left.slip * (left.load * self.components.missed) ** 2 + self._strays(
+            settings, left.load
+        )
         return functions @ self.missed, mean + unlike, reading + unlike
 
     def mean(self, settings: np.ndarray) -> np.ndarray:
@@ -82,9 +90,9 @@ class MissedChannel(ReadOnlyArrays):
 
         Conditions ``at_zero`` of a slip are so close that readings beside them need not show how the force bends there.
         """
-        likeness, functions = self._functions(settings)
+        beyond, functions = self._functions(settings)
         ((one, other),) = self._rows(functions, slopes)
-        unlike = np.sum(1.0 - likeness**2)
+        unlike = np.sum(beyond)
         if at_zero:
             unlike = self.smooth.unseen(settings, np.array(self.components.lengths))
         return float(np.sqrt(np.sum((one - other) ** 2) + unlike * self.components.missed**2))
@@ -96,8 +104,23 @@ class MissedChannel(ReadOnlyArrays):
         return [shared + one @ of_numbers for one in slopes]
 
     def _functions(self, settings: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Correlation (n,) with the model error at the nearest tested conditions, and the functions (n, m) times it."""
+        """As :meth:`SmoothFunctions.faded` at the likely lengths."""
         return self.smooth.faded(settings, np.array(self.components.lengths))
+
+    def _strays(self, settings: np.ndarray, of_load: np.ndarray) -> np.ndarray:
+        """Variance (n,) of the tyre's force because conditions are beyond the tested ranges.
+
+        The model error goes on by a slope that nothing tested limits, of its standard deviation over its length, and the formula
+        strays by :attr:`growth`. The share ``of_load`` (n,) of a model error is left.
+        """
+        out = np.zeros(len(settings))
+        each = zip(self.smooth.inputs, settings.T, self.components.lengths, self.growth, strict=True)
+        for one, at, length, growth in each:
+            beyond = one.beyond(at)
+            slope = self.components.missed / length * of_load * one.size(np.clip(at, one.lower, one.upper))
+            out += (slope * beyond) ** 2
+            out += (growth[np.where(beyond < 0.0, 0, 1)] * one.size(at)) ** 2 * np.abs(beyond) ** 3
+        return out
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -292,16 +315,16 @@ class Predictor(ReadOnlyArrays):
         """The estimated model error (n,) of a channel, averaged over conditions that are not stated."""
         channel = self.channels[name]
         left = self._left(channel, points)
-        return np.asarray(left.load * left.slip * channel.mean(_stated(points, channel.smooth.inputs)))
+        return np.asarray(left.share * channel.mean(_stated(points, channel.smooth.inputs)))
 
     def _left(self, channel: MissedChannel, points: Points) -> Remaining:
         """What is left of a channel's model error, by the rule of :class:`tir.correction.Correction`."""
-        slip = np.ones(len(points))
+        slip = np.zeros(len(points))
         ends = {
             one.name: (one.lower, one.upper) for own in self.channels.values() for one in own.smooth.inputs
         }
         if "kappa" not in [one.name for one in channel.smooth.inputs]:
-            slip = np.exp(-slip_beyond(points.kappa, points.alpha, *ends.get("kappa", (0.0, 0.0))))
+            slip = slip_beyond(points.kappa, points.alpha, *ends.get("kappa", (0.0, 0.0)))
         return Remaining(np.asarray(share_of_load(points.Fz, max(self.lowest_load, 1e-9))), slip)
 
     def points(self, tyre: Tyre, conditions: pd.DataFrame) -> Points:
@@ -395,7 +418,13 @@ def predictor(
     }
     channels = {
         name: MissedChannel(
-            own.smooth, own.components, own.missed, root_with_held(own, kept, spread), own.noise, own.size
+            own.smooth,
+            own.components,
+            own.missed,
+            root_with_held(own, kept, spread),
+            own.noise,
+            own.size,
+            growths(left, own),
         )
         for name, own in left.channels.items()
     }

@@ -56,6 +56,7 @@ def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
                 "root": _text(own.root),
                 "noise": own.noise,
                 "size": own.size,
+                "growth": own.growth.tolist(),
             }
             for name, own in found.channels.items()
         },
@@ -180,6 +181,7 @@ def _channel(own: dict[str, Any], coefficients: int) -> MissedChannel:
         root=_array(own["root"], len(missed) + coefficients),
         noise=float(own["noise"]),
         size=float(own["size"]),
+        growth=np.array(own["growth"], dtype=float).reshape(len(inputs), 2),
     )
 
 

@@ -73,6 +73,8 @@ NAMES = {
     "turning": "F0_direction_N", "load_odd": "load_camber_odd", "play": "backlash_deg", "give": "compliance_deg_per_Nm",
     "skew": "camber_skew_deg", "load_camber": "load_camber",
 }  # fmt: skip
+BEYOND = {"Fz_N": (0.15, 0.35, 1.7, 2.0), "alpha_deg": (-15.0, -11.0, 11.0, 15.0)}
+"""Conditions on the road that no rig went to; loads over the nominal one."""
 SLOPES = {
     "C_alpha_N_per_rad": (0, "alpha"), "C_gamma_N_per_rad": (0, "gamma"), "C_Mz_alpha_Nm_per_rad": (1, "alpha"),
     "C_phit_Nm": (0, "phi_t"),
@@ -225,7 +227,7 @@ def one(job: harness.Job) -> Foreign:
 def _predicted(
     build: Path, tyre: Any, load: float, rig: dict[str, float], disc: bool, rng: np.random.Generator
 ):
-    """True forces, of a disc also on a straight road, and readings of a dozen new runs against the predictions."""
+    """True forces, of a disc also on the road, beyond the tested ranges, and readings of a dozen runs against the predictions."""
     lean, Fz = 45.0 if disc else 9.0, rng.uniform(0.6 * load, 1.5 * load, 12)
     runs = [(np.linspace(-7, 7, 15), np.full(15, x), np.full(15, F), 1.0)
             for x, F in zip(lean * rng.uniform(-1, 1, 12), Fz, strict=True)]  # fmt: skip
@@ -242,6 +244,15 @@ def _predicted(
             if not where:
                 out[f"{name} new run"] = shares(new[name].to_numpy() - best, found[u.format("run")])
                 out[f"{name} new run, file"] = shares(new[name].to_numpy() - file, found[f"u_{name}"])
+    sweep = {"alpha_deg": np.linspace(-7, 7, 8), "gamma_deg": np.linspace(-lean, lean, 5), "Fz_N": load}
+    for what, ends in BEYOND.items():
+        grid = np.meshgrid(*(sweep | {what: np.array(ends) * (load if what == "Fz_N" else 1.0)}).values())
+        at = pd.DataFrame(
+            {name: x.ravel() for name, x in zip(sweep, grid, strict=True)} | {"p_kPa": 250.0, "V_mps": 6.0}
+        )
+        found = mffit.predict(build, at.assign(phi_t_per_m=0.0))
+        true, _ = tyre.forces(*np.radians(at[["alpha_deg", "gamma_deg"]].to_numpy().T), at.Fz_N.to_numpy())
+        out[f"Fy_N best beyond the tested {what}"] = shares(true - found.Fy_best_N, found.u_Fy_best_N)
     return out
 
 

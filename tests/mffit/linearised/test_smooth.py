@@ -59,20 +59,22 @@ def test_slopes_of_the_shares_are_their_differences():
         assert slopes[:, i] == pytest.approx(rise / 2e-5, rel=1e-5, abs=1e-6)
 
 
-def test_beyond_the_tested_range_the_functions_stay_and_likeness_fades():
+def test_beyond_the_tested_range_the_functions_stay_and_fade():
     smooth = SmoothFunctions.over((ALPHA, LOAD))
     inside, end, beyond = [0.1, 2000.0], [0.3, 3000.0], [0.4, 3500.0]
     columns = smooth.columns(np.array([inside, end, beyond]))
     assert np.array_equal(columns[1], columns[2])
     assert not np.allclose(columns[0], columns[1])
-    likeness = smooth.likeness(np.array([inside, end, beyond, [-0.3, 2000.0]]), np.array([0.1, 500.0]))
-    assert likeness == pytest.approx([1.0, 1.0, np.exp(-1.0), np.exp(-0.5)])
+    settings, lengths = np.array([inside, end, beyond, [-0.3, 2000.0]]), np.array([0.1, 500.0])
+    distance, faded = smooth.faded(settings, lengths)
+    assert distance == pytest.approx([0.0, 0.0, 2.0, 1.0])
+    assert faded[2] == pytest.approx(columns[2] * np.exp(-1.0))
 
 
 def test_a_tyre_at_one_condition_has_a_constant_only():
     smooth = SmoothFunctions.over(())
     assert np.array_equal(smooth.columns(np.empty((3, 0))), np.ones((3, 1)))
-    assert np.array_equal(smooth.likeness(np.empty((3, 0)), np.empty(0)), np.ones(3))
+    assert np.array_equal(smooth.beyond(np.empty((3, 0)), np.empty(0)), np.zeros(3))
 
 
 def test_many_conditions_keep_to_the_largest_functions():
@@ -104,8 +106,8 @@ def test_a_condition_that_is_not_stated_is_averaged_over_its_usual_values():
     smooth, alpha = SmoothFunctions.over(inputs), np.linspace(-0.1, 0.1, 7)
     each = [smooth.columns(np.column_stack([alpha, np.full(7, T)])) for T in usual]
     unstated = np.column_stack([alpha, np.full(7, np.nan)])
-    likeness, functions = smooth.faded(unstated, np.array([0.05, 8.0]))
-    assert np.all(likeness == 1.0)
+    beyond, functions = smooth.faded(unstated, np.array([0.05, 8.0]))
+    assert np.all(beyond == 0.0)
     assert functions == pytest.approx(np.mean(each, axis=0), abs=1e-12)
 
 
@@ -133,7 +135,9 @@ def test_what_no_setting_shows_of_a_difference_is_that_of_drawn_functions():
     smooth, lengths = SmoothFunctions.over((alpha, LOAD)), np.array([length, 1500.0])
     settings = np.column_stack([pair, [2000.0, 2000.0]])
     assert smooth.unseen(settings, lengths) == pytest.approx(np.var(left), rel=0.04)
-    assert smooth.unseen(settings + np.array([0.0, 20_000.0]), lengths) == pytest.approx(np.var(change), rel=0.04)
+    assert smooth.unseen(settings + np.array([0.0, 20_000.0]), lengths) == pytest.approx(
+        np.var(change), rel=0.04
+    )
     assert smooth.unseen(np.column_stack([[0.02, 0.06], [2000.0] * 2]), lengths) < 1e-6
     camber = SmoothFunctions.over((Input("gamma", -0.12, 0.12, 0.02), LOAD))
     assert camber.unseen(settings, lengths) < 1e-6

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
-from conftest import Built
+from conftest import CAMBERS, Built, brush
 
 import mffit
 from mffit import prediction
@@ -128,6 +128,25 @@ def test_an_empty_cell_of_an_optional_column_is_nominal(foreign: Built, here):
     plain = mffit.predict(foreign.folder, GOOD.assign(p_kPa=[200.0, 180.0, 200.0]))
     assert found.Fy_N.equals(plain.Fy_N)
     assert np.isnan(found.p_kPa[0])
+
+
+@pytest.mark.parametrize(
+    ("over", "values", "least"),
+    [("alpha_deg", (11.0, 12.0, 14.0, 17.0, 20.0), 0.85), ("Fz_N", (200.0, 400.0, 600.0), 0.75)],
+)
+def test_beyond_the_tested_range_the_uncertainty_grows_as_the_error(foreign: Built, over, values, least):
+    """True forces of a tyre that is no Magic Formula, tested up to 10 deg and from 800 N; at the far end the error is large."""
+    grid = {"alpha_deg": np.linspace(-9.0, 9.0, 10), "Fz_N": (1000.0, 1800.0, 3000.0), "gamma_deg": CAMBERS}
+    if over == "alpha_deg":
+        values = (*(-x for x in values), *values)
+    at = {
+        name: x.ravel() for name, x in zip(grid, np.meshgrid(*(grid | {over: values}).values()), strict=True)
+    }
+    found = foreign.predict(**at)
+    true, _ = brush(np.radians(at["alpha_deg"]), np.radians(at["gamma_deg"]), at["Fz_N"])
+    error, u = np.abs(found.Fy_best_N.to_numpy() - true), found.u_Fy_best_N.to_numpy()
+    assert np.mean(error < 1.96 * u) >= least
+    assert 1.96 * np.sqrt(np.mean(u**2)) < 5.0 * np.sqrt(np.mean(error**2))
 
 
 def test_conditions_outside_the_ranges_of_the_file_are_said(foreign: Built, here, capsys):
