@@ -104,7 +104,12 @@ def sheets(browser: Any) -> int:
 
 
 def words_of(document: bytes) -> str:
-    """The text of a PDF that Chromium wrote, without its spaces: glyphs by the table of Unicode of each font."""
+    """The text of a PDF that Chromium wrote, without its spaces."""
+    return "".join(words_of_sheets(document))
+
+
+def words_of_sheets(document: bytes) -> list[str]:
+    """The text of every sheet of a PDF that Chromium wrote, without its spaces: glyphs by the table of Unicode of each font."""
     objects = {
         int(number): (head, zlib.decompress(content) if b"/FlateDecode" in head else content)
         for number, head, content in re.findall(
@@ -117,13 +122,18 @@ def words_of(document: bytes) -> str:
         for font, number in re.findall(rb"/(F\d+) (\d+) 0 R", head)
         if (found := re.search(rb"/ToUnicode (\d+) 0 R", objects[int(number)][0]))
     }
+    contents = [
+        re.search(rb"/Type /Page\b.*?/Contents (\d+) 0 R", head, re.DOTALL) for head, _ in objects.values()
+    ]
+    return [_text(objects[int(found[1])][1], tables) for found in contents if found]
+
+
+def _text(content: bytes, tables: dict[bytes, dict[int, str]]) -> str:
+    """The text of a sheet by the tables of its fonts."""
     said, table = [], {}
-    for _, content in objects.values():
-        for font, glyphs in re.findall(
-            rb"/(F\d+) [\d.]+ Tf|<([0-9A-Fa-f]+)>", content if b" Tf" in content else b""
-        ):
-            table = tables[font] if font else table
-            said += [table.get(int(glyphs[k : k + 4], 16), "") for k in range(0, len(glyphs), 4)]
+    for font, glyphs in re.findall(rb"/(F\d+) [\d.]+ Tf|<([0-9A-Fa-f]+)>", content):
+        table = tables[font] if font else table
+        said += [table.get(int(glyphs[k : k + 4], 16), "") for k in range(0, len(glyphs), 4)]
     return "".join(said).replace(" ", "")
 
 
