@@ -53,7 +53,7 @@ def headline(diagnosis: Diagnosis) -> str:
 
 def verdict(diagnosis: Diagnosis) -> str:
     """The answer without numbers and without full stop."""
-    effects = diagnosis.repaired or diagnosis.effects
+    effects = _explained_by(diagnosis)
     names = listed([_with_ties(found) for found in effects])
     match diagnosis.answer:
         case Answer.NOTHING:
@@ -66,11 +66,19 @@ def verdict(diagnosis: Diagnosis) -> str:
             return f"These data cannot tell what is missing; the best explanation is {names}"
         case Answer.UNDECIDED:
             likeliest, confidence = diagnosis.ranked_alternatives()[0]
-            what = f"{NAMES.get(likeliest, likeliest)} ({per_cent(confidence)})"
-            return f"These data cannot tell whether anything is missing; {what} may be"
+            refused = any(isinstance(remark, NoRepair) for remark in diagnosis.notes)
+            but = "left-out sweeps do not confirm it" if refused else "these data do not establish it"
+            what = f"{NAMES.get(likeliest, likeliest)} is suspected (probability {per_cent(confidence)})"
+            return f"Nothing is corrected; {what}, but {but}"
         case Answer.UNKNOWN:
             also = f" in addition to {names}" if effects else ""
             return f"Something is missing that no effect of the library describes{also}"
+
+
+def _explained_by(diagnosis: Diagnosis) -> tuple[AcceptedEffect, ...]:
+    """The effects of which the answer speaks: the repaired ones, or the best explanation where none is certain enough."""
+    undecided = diagnosis.effects if diagnosis.answer is Answer.UNDECIDED else ()
+    return tuple(diagnosis.repaired or undecided)
 
 
 def reasons(diagnosis: Diagnosis) -> tuple[str, ...]:
@@ -148,14 +156,14 @@ def _taken_off(diagnosis: Diagnosis) -> list[str]:
 
 def _misfit(diagnosis: Diagnosis) -> str:
     """The misfit before and after in words, and what remains."""
-    given, effects = diagnosis.gap_examined, diagnosis.repaired or diagnosis.effects
+    given, effects = diagnosis.gap_examined, _explained_by(diagnosis)
     after = diagnosis.gap_after if diagnosis.repaired else diagnosis.gap_named
     parts = []
     for name, unit, noise in _measured(diagnosis.noise):
         was, is_ = short(given.rms(name)), short(after.rms(name))
         if effects and was == is_ and given.rms(name) < MISFIT_AT_NOISE * noise:
             continue
-        now = f"{is_} {unit} instead of {was} {unit}" if effects else f"{was} {unit}"
+        now = f"{is_} {unit} instead of {was} {unit}" if effects and was != is_ else f"{was} {unit}"
         parts.append(
             f"{now} in {CHANNELS[name].word} ({_as_read(diagnosis, name)}noise {short(noise)} {unit}"
             f"{_times_stated(diagnosis.noise, name)})"
@@ -227,9 +235,7 @@ def _suspicions(diagnosis: Diagnosis) -> str:
     if not found or any(isinstance(remark, NoRepair) for remark in diagnosis.notes):
         return ""
     limit, names = per_cent(MOST), listed([_suspicion(one) for one in found])
-    if diagnosis.repaired:
-        return f" Suspected but not repaired, at a confidence below {limit}: {names}."
-    return f" It is not repaired, because no confidence reaches {limit}: {names}."
+    return f" Suspected but not repaired, at a confidence below {limit}: {names}."
 
 
 def _suspicion(found: AcceptedEffect) -> str:

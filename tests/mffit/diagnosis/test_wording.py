@@ -128,13 +128,23 @@ def test_an_unlikely_effect_is_called_undecided(camber):
     )
 
 
-def test_an_alternative_that_may_be_missing_is_named(nothing):
+def test_an_effect_that_may_be_missing_is_suspected_and_not_the_answer(nothing):
     said = wording.headline(
         replace(nothing, answer=Answer.UNDECIDED, alternatives={"loadcell-gain": 0.75, "drift": 0.1})
     )
     assert said.startswith(
-        "These data cannot tell whether anything is missing; calibration of Fy (75 %) may be: the rms misfit is"
+        "Nothing is corrected; calibration of Fy is suspected (probability 75 %), but these data do not establish it: the rms "
+        "misfit is"
     )
+
+
+def test_what_is_not_repaired_is_no_answer_where_something_unknown_is_missing(camber):
+    weak = replace(camber.effects[0], confidence=0.4, together=0.4, repaired=False)
+    found = replace(camber, effects=(weak,), answer=Answer.UNKNOWN, alternatives={})
+    said = wording.headline(found)
+    assert said.startswith("Something is missing that no effect of the library describes: the rms misfit is")
+    assert "instead of" not in said
+    assert said.endswith(" Suspected but not repaired, at a confidence below 50 %: camber stiffness (40 %).")
 
 
 @pytest.mark.parametrize(
