@@ -8,6 +8,5 @@ if TYPE_CHECKING:
     from mffit.comparison.characteristics import DECIDED_BY, PEAKS, Tested
     from mffit.comparison.compare import against_points, between
     from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Difference
-    from mffit.comparison.wording import note_on_temperature
 
 __getattr__ = on_demand(__name__)

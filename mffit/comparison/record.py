@@ -163,6 +163,11 @@ class Comparison(Brief):
         return tuple(row for row in self.numbers if row.change)
 
     @property
+    def judged(self) -> bool:
+        """Whether the uncertainty of any difference is known."""
+        return any(row.z is not None for row in (*self.numbers, *self.coefficients))
+
+    @property
     def significant(self) -> tuple[Difference, ...]:
         """The numbers, then the coefficients, that differ beyond chance, at a false discovery rate of 1 %."""
         rows = (*self.numbers, *self.coefficients)

@@ -1,7 +1,7 @@
 """The sentences about a comparison."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from mffit.comparison.characteristics import Tested
 from mffit.comparison.of_rig import ExplainedByRig
@@ -87,8 +87,7 @@ def rig_or_tyre(found: ExplainedByRig, *, fitted: bool) -> str:
     left = listed(
         [f"{number(size, digits=3)} {CHANNELS[name].unit} in {name}" for name, size in found.left.items()]
     )
-    named = listed([f"{words_of(name)} {_shown(name, one)}" for name, one in found.errors.items()])
-    errors = f" ({named})" if named else ""
+    errors = _largest_of(found, [*found.errors])
     if found.suffices:
         return (
             f"It can be the rig: errors of the size that is declared{errors} leave {left}, which is {noise}."
@@ -102,16 +101,32 @@ def rig_or_tyre(found: ExplainedByRig, *, fitted: bool) -> str:
     if found.mostly:
         return f"Most of it can be the rig: errors of the size that is declared{errors} leave {left}; {rest}."
     if found.fits and found.beyond:
-        worse = some([f"{words_of(name)} {_shown(name, found.errors[name])}" for name in found.beyond])
-        return f"It is the tyre, or the rig is worse than declared ({worse}), which leaves {left}; mffit diagnose tries both."
+        worse = _largest_of(found, found.beyond)
+        return f"It is the tyre, or the rig is worse than declared{worse}, which leaves {left}; mffit diagnose tries both."
     if not found.is_plausible:
         return "It is not the rig as declared: its errors would have to be far larger; mffit diagnose names what is missing."
     return f"It is not the rig as declared: its errors would leave {left}; {rest}."
 
 
+def _largest_of(found: ExplainedByRig, names: Sequence[str]) -> str:
+    """The first of some errors, and the number of the others, in brackets; empty if there are none."""
+    if not names:
+        return ""
+    more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+    return f" ({_shown(names[0], found.errors[names[0]])}{more})"
+
+
+def notes_on_rig(found: ExplainedByRig | None) -> tuple[str, ...]:
+    """A remark with all errors of the rig that would explain a gap; none if the headline names them."""
+    if found is None or found.is_noise or len(found.errors) < 2:
+        return ()
+    errors = listed([_shown(name, one) for name, one in found.errors.items()])
+    return (f"The errors of the rig that would explain most of the gap are {errors}.",)
+
+
 def _shown(name: str, error: Quantity) -> str:
     value, u, unit = shown(name, error.value, error.u)
-    return stated(Quantity(value, u, unit), unit)
+    return f"{words_of(name)} {stated(Quantity(value, u, unit), unit)}"
 
 
 def _significant(found: Comparison) -> str:

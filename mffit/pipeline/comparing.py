@@ -9,7 +9,7 @@ from types import MappingProxyType
 import tir
 from mffit import as_json, fleet, prediction
 from mffit import config as configuration
-from mffit.comparison import ComparedSubject, Comparison, against_points, between, note_on_temperature
+from mffit.comparison import ComparedSubject, Comparison, against_points, between, wording
 from mffit.comparison.of_rig import declared_errors, explained_by_rig
 from mffit.config import Config, declared_faults
 from mffit.errors import InputError
@@ -168,7 +168,8 @@ def _with_data(subject: ComparedSubject, config: Config) -> Comparison:
     declared = declared_errors(config, points.used_setups, channels_of(points))
     found = against_points(subject, simulation, points, measured, of_file, name)
     own = subject.known is not None and fitted_to(subject.tyre, config)
-    found = replace(found, by_rig=explained_by_rig(points, simulation, declared, subject.missed), fitted=own)
-    if not warm:
-        return found
-    return replace(found, notes=(*found.notes, note_on_temperature(subject.name, warm[T_REF])))
+    by_rig = explained_by_rig(points, simulation, declared, subject.missed)
+    notes = (*found.notes, *wording.notes_on_rig(by_rig))
+    if warm:
+        notes += (wording.note_on_temperature(subject.name, warm[T_REF]),)
+    return replace(found, by_rig=by_rig, fitted=own, notes=notes)

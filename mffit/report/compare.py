@@ -29,7 +29,13 @@ def curves_of_both(found: Comparison, channel: str) -> Sheet:
     if not any(gap.rms for gap in gaps):
         return NOTHING
     groups = [[_panel(found, gap) for gap in gaps if gap.over == over] for over in labels.OTHER]
-    return Sheet(rows=in_rows(*groups), height=1.9, key={found.first: FIRST, found.second: SECOND})
+    banded = any(half is not None for gap in gaps for half in (gap.half_first, gap.half_second))
+    return Sheet(
+        rows=in_rows(*groups),
+        height=1.9,
+        key={found.first: FIRST, found.second: SECOND},
+        remark="Shaded areas hold a reading of a further run with a probability of 95 %." if banded else "",
+    )
 
 
 def _panel(found: Comparison, gap: CurveGap) -> Panel:

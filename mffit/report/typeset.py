@@ -45,6 +45,7 @@ RULES: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], ...] 
     (re.compile(r"(?<![\w.)\]-])-(?=\d)"), "−"),
     (re.compile(r"(?<=\d) deg\b"), "°"),
     (re.compile(r"\bdegC\b"), "°C"),
+    (re.compile(r"(?<=\d) (?=%)"), "\N{NO-BREAK SPACE}"),
     (re.compile(r"(?<![\w.-])[A-Za-z]\w+(?![\w(]|\.\w)"), _word),
 )
 """Applied in this order to escaped text."""

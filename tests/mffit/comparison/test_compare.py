@@ -28,6 +28,7 @@ from mffit.fleet import Specimen
 from mffit.numbers import Numbers
 from mffit.pipeline.build_output import write_build
 from mffit.quantities import CHARACTERISTICS, DIRECT
+from mffit.rig_errors import words_of
 from mffit.rounding import AtLeast, stated
 from mffit.tested import words_on_tested
 from tests.browser import assert_readable
@@ -314,6 +315,8 @@ def test_a_build_is_compared_with_its_uncertainties(folder, stiffer, tmp_path):
     page = (tmp_path / "page" / "compare.html").read_text()
     assert "cornering stiffness" in page
     assert "curves_Fy" in {path.stem for path in (tmp_path / "page" / "plots").iterdir()}
+    assert "in u</th>" in page
+    assert "Shaded areas" in page
 
 
 def test_a_reader_sees_every_picture_of_the_page(folder, stiffer, tmp_path):
@@ -328,7 +331,10 @@ def test_a_force_that_is_equal_on_both_sides_is_said_and_not_drawn(stiffer, tmp_
     found = mffit.compare(tmp_path / "a.tir", tmp_path / "b.tir", out=tmp_path / "page")
     assert {gap.channel for gap in found.curves if not gap.rms} == {"Fx"}
     assert not (tmp_path / "page" / "plots" / "curves_Fx.png").exists()
-    assert "Longitudinal force is equal on both sides" in (tmp_path / "page" / "compare.html").read_text()
+    page = (tmp_path / "page" / "compare.html").read_text()
+    assert "Longitudinal force is equal on both sides" in page
+    assert "in u</th>" not in page  # nor bands: no build states an uncertainty
+    assert "Shaded areas" not in page
 
 
 def test_two_builds_of_one_name_are_called_by_their_folders(folder):
@@ -386,7 +392,13 @@ def test_a_gap_is_said_to_be_of_the_rig_or_of_the_tyre(folder, hidden, said, nam
     made = {name: x + rng.normal(size=len(x)) * found.points.u(name) for name, x in read.items()}
     explained = explained_by_rig(found.points.replace(**made), found.simulation, DECLARED)
     assert wording.rig_or_tyre(explained, fitted=False).startswith(said)
+    assert len(wording.rig_or_tyre(explained, fitted=False)) < 250  # the other errors are in a remark
     of_fit = wording.rig_or_tyre(explained, fitted=True)
+    remark = "".join(wording.notes_on_rig(explained))
+    assert explained.is_noise or [n for n in explained.errors if words_of(n) not in remark] in (
+        [],
+        [*explained.errors][:1],
+    )
     assert of_fit.startswith(
         said if explained.is_noise or explained.suffices else "The file was fitted to these points"
     )
