@@ -19,10 +19,10 @@ BACKWARD_CAMBER = BY_ID["backward-camber"]
 def headline(plan: Plan) -> str:
     """The plan in one sentence."""
     if not plan.steps:
-        least = f"{100 * WORTHWHILE_FALL:g} %"
+        limited = " The budget shows what limits it." if plan.identified.budget else ""
         return (
-            f"None of the runs tried lowers {plan.goal.label} by {least} or more; it is {shown(plan, plan.now)}. The budget "
-            "shows what limits it."
+            f"{plan.goal.label}: {shown(plan, plan.now)}. None of the runs tried lowers it by {100 * WORTHWHILE_FALL:g} % or "
+            f"more.{limited}"
         )
     runs, points = counted(len(plan.steps), "addition"), counted(plan.points, "point")
     return (
@@ -126,12 +126,11 @@ def identified_by_now(plan: Plan) -> list[str]:
 def remarks(plan: Plan) -> list[str]:
     """What the matrix of stages does not say: errors that no run shows yet, correlations, the largest contribution."""
     found = plan.identified
+    pairs = [f"{a} and {b} ({correlation:+.2f})" for a, b, correlation in found.correlated]
+    only = "Only the combination of these is determined, as they are strongly correlated: "
     return [
         *_unseen_skew(plan),
-        *(
-            f"{a} and {b} are strongly correlated ({correlation:+.2f}): only their combination is determined."
-            for a, b, correlation in found.correlated
-        ),
+        *([f"{only}{', '.join(pairs)}."] if pairs else []),
         *_largest_contribution(found),
     ]
 

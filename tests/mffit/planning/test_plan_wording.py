@@ -51,7 +51,7 @@ def plan(goal="eps_gamma", pecp1="direct", **changes):
 
 def test_what_the_sweeps_identify():
     assert wording.identified_by_now(plan()) == [
-        "PKY6 and PVY3 are strongly correlated (-0.99): only their combination is determined.",
+        "Only the combination of these is determined, as they are strongly correlated: PKY6 and PVY3 (-0.99).",
         "The largest contribution to the uncertainty of eps_gamma (direct method) is camber alignment: 0.051.",
         "Camber: determined by the data: PKY3; determined only in combination: PKY6; determined mostly by prior knowledge: PKY7; "
         "not visible: PEY4 (camber and slip).",
@@ -84,9 +84,10 @@ def test_the_headline_counts_runs_and_points():
         "1 addition with 10 points: u(eps_gamma) by the direct method from 0.0561 to 0.0310."
     )
     assert wording.headline(plan(steps=(), now=math.inf)) == (
-        "None of the runs tried lowers u(eps_gamma) by the direct method by 5 % or more; it is not measured. The budget "
-        "shows what limits it."
+        "u(eps_gamma) by the direct method: not measured. None of the runs tried lowers it by 5 % or more. The budget shows "
+        "what limits it."
     )
+    assert "budget" not in wording.headline(plan(steps=(), identified=replace(IDENTIFIED, budget=())))
 
 
 @pytest.mark.parametrize(
