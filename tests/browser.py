@@ -30,6 +30,10 @@ if (matchMedia('print').matches) for (const control of document.querySelectorAll
   const framed = getComputedStyle(control).borderTopStyle !== 'none';
   if (control.checkVisibility() && framed) found.push(`on paper: ${control.outerHTML.slice(0, 60)}`);
 }
+for (const cell of document.querySelectorAll('td, th')) {
+  const over = cell.checkVisibility() && cell.scrollWidth > cell.clientWidth + 1;
+  if (over) found.push(`over its cell: ${cell.textContent.slice(0, 40)}`);
+}
 const pen = document.createElement('canvas').getContext('2d');
 for (const field of document.querySelectorAll('select, input[type=number]')) {
   if (!field.checkVisibility()) continue;

@@ -25,7 +25,7 @@ function showMisfit() {
       fit = fitMisfits[name] ??= misfit(name, fitOwn);
     if (!line.cells.length) for (let i = 0; i < 5; i++) line.insertCell().className = i ? "n" : "";
     if (line.dataset.name !== name) line.cells[0].replaceChildren(symbol(quantity(name)), ` [${unit(name)}]${
-      project.channels[k].of_fit ? "" : ", beside the fit"}`);
+      project.channels[k].of_fit ? "" : ", apart from the fit"}`);
     line.dataset.name = name;
     const size = rmse => written(shownIn(name, rmse));
     const before = project.before && name in project.before.rmse ? size(project.before.rmse[name]) : "";
