@@ -431,10 +431,8 @@ def best_effect(found: BestEffect) -> str:
 
 
 def rival_of_formula(found: BestEffect | None) -> str:
-    """A clause on the effect of rig or environment that may be behind model error; empty if none may."""
-    if found is None or not found.possible or found.best.effect.kind == "tyre":
-        return ""
-    return best_effect(found)
+    """A clause on the effect of rig or environment that explains most of the misfit, as model error would; empty if none does."""
+    return best_effect(found) if found is not None and found.explains_most else ""
 
 
 def _number(name: str, value: float, u: float) -> str:

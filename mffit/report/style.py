@@ -49,15 +49,15 @@ SETTINGS: dict[str, Any] = {
 
 
 class ColourRange(NamedTuple):
-    """Part of a colour map of matplotlib, dark to light; the lightest colours cannot be seen on white."""
+    """Part of a colour map of matplotlib, dark to light; its ends cannot be seen on white, or are white on a dark page."""
 
     name: str
     first: float
     last: float
 
 
-COLD = ColourRange("viridis", 0.0, 0.8)
-WARM = ColourRange("plasma", 0.4, 0.85)
+COLD = ColourRange("viridis", 0.12, 0.8)
+WARM = ColourRange("plasma", 0.35, 0.78)
 """Colours of another quantity in the same picture: no colour is both of these."""
 
 
