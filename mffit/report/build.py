@@ -40,6 +40,7 @@ BUILD: Mapping[str, Callable[[BuildView], Sheet]] = {
 def write_build(result: BuildResult, folder: Path) -> None:
     """Write ``plots/*.png`` and ``report.html`` of a build to an existing folder."""
     view = view_of(result)
+    because = result.reasons or result.trust.doubts
     page.write(
         "build.html.j2",
         folder / "report.html",
@@ -47,6 +48,8 @@ def write_build(result: BuildResult, folder: Path) -> None:
         view,
         verdict=verdict(result),
         judgement=judgement(result),
+        because=because,
+        warnings=[said for said in result.warnings if not said.endswith(tuple(because))],
         on_road=road_sentences(result.road, view.normal_file) if result.road is not None else [],
         sweeps=sweep_rows(view.points),
         headlines=headlines(result),

@@ -20,6 +20,7 @@ from mffit.report.style import ramp
 from mffit.report.text import build_summary
 from mffit.report.verdict import headlines
 from mffit.rounding import AtLeast, ascii_only
+from mffit.suspicion import Trust
 from mffit.tested import words_on_tested
 from tests.browser import (
     PAPER,
@@ -321,6 +322,24 @@ def test_folds_show_when_opened_and_on_paper_what_is_decided_by(browser):
     assert shown(".paper-only")
     assert sheets(browser) <= 5
     look(browser)
+
+
+@pytest.mark.parametrize(
+    ("trust", "judged"),
+    [(Trust(("wheel loose",)), "NOT TO BE TRUSTED"), (Trust((), ("wheel loose",)), "in doubt")],
+)
+def test_a_page_gives_each_reason_once(result, trust, judged, tmp_path):
+    """Below the verdict, and not among the warnings again."""
+    warnings = (
+        "the result is not to be trusted: wheel loose" if trust.reasons else "wheel loose",
+        "belt worn",
+    )
+    write_build(replace(result, trust=trust, warnings=warnings), tmp_path)
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert f"is {judged}" in page
+    assert page.count("wheel loose") == 1
+    assert page.count("belt worn") == 1
+    assert "1 other warning" in page
 
 
 LEADS = """return [...document.querySelectorAll('main :is(h2, h3, h4, summary, p:has(+ .scroll))')].filter(one =>
