@@ -51,7 +51,7 @@ def _panel(found: Comparison, gap: CurveGap) -> Panel:
 
 
 def differences(found: Comparison) -> Sheet:
-    """The largest differences of numbers over their standard uncertainties."""
+    """The largest differences of numbers over their standard uncertainties, and the curves that are farthest apart."""
     rows = [row for row in found.unequal if row.z is not None][:MOST_ROWS]
     if not rows:
         return NOTHING
@@ -62,7 +62,17 @@ def differences(found: Comparison) -> Sheet:
         y=listed([f"{wording.quantity(found, row).word}, {wording.place(row)}" for row in rows]),
         series=[Bars(name="difference", lengths=z, colours=colours)],
     )
-    return Sheet(rows=[[panel]], height=0.20 * len(rows) + 0.3)
+    height = 0.20 * len(rows) + 0.3
+    apart = [gap for gap in found.curves if gap.rms]
+    if not apart:
+        return Sheet(rows=[[panel]], height=height)
+    widest = max(apart, key=lambda gap: gap.rms / np.max(np.abs(gap.first)))
+    return Sheet(
+        rows=[[panel, _panel(found, widest)]],
+        height=height,
+        key={found.first: FIRST, found.second: SECOND},
+        remark="The curves are those that are farthest apart, for their size.",
+    )
 
 
 COMPARISON: Mapping[str, Callable[[Comparison], Sheet]] = {

@@ -30,6 +30,8 @@ KEY_LINE = 13.0
 """Height of a line of the key [pt]."""
 SCALE = (14.0, 17.0, 180.0, 7.0)
 """Left, bottom, width and height of the scale of maps, in what is above the panels [pt]."""
+UNIT = re.compile(r"(?<=\d) (?=\S+$)")
+"""Between a number and its unit at the end of a name."""
 NO_FORMULA = re.compile(r"\$(?!_\{\w+\}\$)(?<!\}\$)")
 """A dollar sign that does not belong to a subscript such as that of ``QuantityName.mathtext``."""
 COLOURS = 128
@@ -244,7 +246,10 @@ def _space_out(axes: Axes) -> None:
 def _words_of(axis: Axis, width: float) -> list[str]:
     """The names at a vertical axis, in lines that leave room for the data."""
     half = int(0.58 * width / style.LETTER)
-    return [textwrap.fill(_text(word), half) for word in (axis.words or {}).values()]
+    return [
+        textwrap.fill(_text(UNIT.sub("\N{NO-BREAK SPACE}", word)), half)
+        for word in (axis.words or {}).values()
+    ]
 
 
 def _line(look: Look) -> dict[str, Any]:

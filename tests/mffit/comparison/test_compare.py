@@ -28,6 +28,7 @@ from mffit.fleet import Specimen
 from mffit.numbers import Numbers
 from mffit.pipeline.build_output import write_build
 from mffit.quantities import CHARACTERISTICS, DIRECT
+from mffit.report import compare
 from mffit.rig_errors import words_of
 from mffit.rounding import AtLeast, stated
 from mffit.tested import words_on_tested
@@ -314,6 +315,9 @@ def test_a_build_is_compared_with_its_uncertainties(folder, stiffer, tmp_path):
     assert written["numbers"][0]["in_u"] == found.numbers[0].z
     page = (tmp_path / "page" / "compare.html").read_text()
     assert "cornering stiffness" in page
+    _, curves = compare.differences(found).panels
+    apart = [gap.rms / np.abs(gap.first).max() for gap in found.curves]
+    assert curves.series[0].y is found.curves[int(np.argmax(apart))].first
     assert "curves_Fy" in {path.stem for path in (tmp_path / "page" / "plots").iterdir()}
     assert "in u</th>" in page
     assert "Shaded areas" in page

@@ -266,6 +266,13 @@ def test_names_of_several_lines_do_not_overlap():
         assert crossing(boxes(axes)) == []
 
 
+def test_a_number_at_the_end_of_a_name_keeps_its_unit():
+    axis = listed([f"{'x' * k} of the file, 840 N" for k in range(1, 60)])
+    lines = [line for name in pictures._words_of(axis, 250.0) for line in name.split("\n")]
+    assert len(lines) > 59
+    assert "N" not in lines
+
+
 @pytest.mark.parametrize("title", ["100 $ per $\\frac", "$x$", "轮胎", "<b> & more"])
 def test_names_are_no_formulae(title, recwarn):
     (axes,) = axes_of(panel_of([0, 1], [0, 1], title=title))
