@@ -173,9 +173,14 @@ def assert_readable(page: Path) -> None:
             assert console_errors(browser) == []
 
 
-def brightness(element: Any) -> np.ndarray:
-    """A screenshot of an element as grey levels (height, width), 0 black to 1 white."""
+def colours(element: Any) -> np.ndarray:
+    """A screenshot of an element (height, width, 3), red, green and blue, 0 to 1."""
     from PIL import Image
 
     with Image.open(io.BytesIO(base64.b64decode(element.screenshot_as_base64))) as image:
-        return np.asarray(image.convert("L")) / 255.0
+        return np.asarray(image.convert("RGB")) / 255.0
+
+
+def brightness(element: Any) -> np.ndarray:
+    """A screenshot of an element as grey levels (height, width), 0 black to 1 white."""
+    return colours(element) @ [0.299, 0.587, 0.114]

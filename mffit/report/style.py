@@ -1,7 +1,13 @@
 """How all pictures look: matplotlib's settings, and colours that differ for any colour vision and in grey print."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from functools import cache
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from matplotlib.colors import LinearSegmentedColormap
 
 INK = "#1c2833"
 MUTED = "#5d6d7b"
@@ -12,8 +18,6 @@ CONTRAST = "#c4501b"
 CALM = "#2b8a6e"
 SHADE = 0.25
 """Opacity of bands: three that overlap can still be told apart."""
-DIVERGING = "RdBu_r"
-"""Blue to red through white, which means "within the noise"."""
 
 WIDTH = 720.0
 """Of a picture [pt]; on a sheet of A4, a point is nearly a pixel, and letters are 7 pixels or more."""
@@ -56,9 +60,23 @@ class ColourRange(NamedTuple):
     last: float
 
 
+DIVERGING = ColourRange("RdBu_r", 0.12, 0.88)
+"""Blue to red through white, which means "within the noise"."""
 COLD = ColourRange("viridis", 0.12, 0.8)
 WARM = ColourRange("plasma", 0.35, 0.78)
 """Colours of another quantity in the same picture: no colour is both of these."""
+
+
+@cache
+def colour_map(colours: ColourRange) -> LinearSegmentedColormap:
+    """The part as a colour map."""
+    from matplotlib import colormaps
+    from matplotlib.colors import LinearSegmentedColormap
+
+    shades = colormaps[colours.name](
+        [colours.first + (colours.last - colours.first) * k / 255 for k in range(256)]
+    )
+    return LinearSegmentedColormap.from_list(colours.name, shades)
 
 
 def ramp(levels: Iterable[float], colours: ColourRange = COLD) -> dict[float, str]:

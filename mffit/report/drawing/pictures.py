@@ -152,7 +152,12 @@ def _sample(look: Look) -> Line2D | Patch:
 
 def _draw_scale(axes: Axes, scale: ColourScale) -> None:
     shades = np.linspace(-scale.limit, scale.limit, 256)[None]
-    axes.imshow(shades, cmap=style.DIVERGING, extent=(-scale.limit, scale.limit, 0.0, 1.0), aspect="auto")
+    axes.imshow(
+        shades,
+        cmap=style.colour_map(style.DIVERGING),
+        extent=(-scale.limit, scale.limit, 0.0, 1.0),
+        aspect="auto",
+    )
     axes.set(yticks=[])
     axes.spines[:].set_visible(False)
     axes.tick_params(length=0.0, pad=NUMBER_OFF, labelcolor=style.MUTED)
@@ -283,7 +288,7 @@ def _draw_trace(axes: Axes, series: Trace, size: float, scale: ColourScale | Non
         look.size**2,
         series.shade,
         marker=look.marker,
-        cmap=style.DIVERGING,
+        cmap=style.colour_map(style.DIVERGING),
         vmin=-scale.limit,
         vmax=scale.limit,
         edgecolors=style.FAINT,

@@ -27,6 +27,7 @@ from tests.browser import (
     PHONE,
     SCREEN,
     brightness,
+    colours,
     complaints,
     console_errors,
     look,
@@ -340,6 +341,19 @@ def test_a_page_gives_each_reason_once(result, trust, judged, tmp_path):
     assert page.count("wheel loose") == 1
     assert page.count("belt worn") == 1
     assert "1 other warning" in page
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_the_sign_of_a_large_residual_is_seen(browser, dark):
+    """Blue at one end of the scale, red at the other, also on a dark screen."""
+    look(browser, dark=dark)
+    seen = colours(browser.find_element("css selector", "[aria-label^=Residuals] .key img"))
+    row = seen[np.argmax(np.ptp(seen, axis=2).sum(axis=1))]
+    coloured = np.flatnonzero(np.ptp(row, axis=1) > 0.2)
+    first, last = row[coloured[0] + 2], row[coloured[-1] - 2]
+    assert first[2] - first[0] > 0.2
+    assert last[0] - last[2] > 0.2
+    look(browser)
 
 
 LEADS = """return [...document.querySelectorAll('main :is(h2, h3, h4, summary, p:has(+ .scroll))')].filter(one =>
