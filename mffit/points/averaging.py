@@ -44,21 +44,21 @@ def means(
     stretches: Sequence[Stretch],
     labels: Sequence[str],
     faulty: np.ndarray,
-    radius: float,
+    grids: Sequence["Grid"],
 ) -> Means:
     """Points: means over plateaus, with estimated standard errors if the file states none, and over short blocks of sweeps.
 
-    ``phi_t`` is the turn slip of the path [1/m], ``radius`` the wheel's [m]. ``labels`` name the sweep of each stretch. Samples
-    of the mask ``faulty`` (n,) are left out.
+    ``phi_t`` is the turn slip of the path [1/m]. ``labels`` name the sweep of each stretch, ``grids`` divide those that are no
+    plateaus. Samples of the mask ``faulty`` (n,) are left out.
     """
     used = np.zeros(len(sweep), dtype=bool)
     if not stretches:
         return Means(rows_as_points(sweep, phi_t, np.flatnonzero(used)), (), used)
     plateau = np.zeros(1, dtype=int), np.ones(1, dtype=bool)  # one mean, of however many samples
     kept, sizes = [], []
-    for stretch in stretches:
+    for stretch, grid in zip(stretches, grids, strict=True):
         rows = stretch.begin + np.flatnonzero(~faulty[stretch.begin : stretch.end])
-        first, enough = plateau if stretch.kind == PLATEAU else _blocks(sweep, rows, radius)
+        first, enough = plateau if stretch.kind == PLATEAU else _blocks(sweep.time[rows], grid)
         counts = np.diff(np.r_[first, len(rows)])
         kept.append(rows[np.repeat(enough, counts)])
         sizes.append(counts[enough])
@@ -102,8 +102,17 @@ def _errors(
     return np.where(np.isfinite(stated), stated, np.where(errors > 0.0, errors, np.nan))
 
 
-def _blocks(sweep: Sweep, rows: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarray]:
-    """First row of every block to average, and the mask of the blocks that give a point: half of their samples are sound.
+class Grid(NamedTuple):
+    """Times at which a sweep is divided into blocks to average."""
+
+    start: float  #: of the first block [s]
+    interval: float  #: between samples [s]
+    size: float  #: of a block, in samples
+    shortest: float  #: time from the first to the last sample of a block [s]
+
+
+def grid_of(sweep: Sweep, rows: np.ndarray, radius: float) -> Grid:
+    """The blocks of a stretch, from its sound ``rows``; ``radius`` is that of the wheel [m].
 
     A wheel that is not round makes a ripple, which a mean over whole turns does not contain: such a block lacks one sample at
     most at either end.
@@ -117,6 +126,7 @@ def _blocks(sweep: Sweep, rows: np.ndarray, radius: float) -> tuple[np.ndarray, 
     for name, most in AVERAGED_RANGE.items():
         values = getattr(sweep, name)[rows]
         rates = np.abs(values[apart:] - values[:-apart]) / seconds
+        rates = rates[np.isfinite(rates)]  # lines left out by hand may have none
         moved = float(np.median(rates)) if len(rates) else 0.0
         if moved > 0.0:
             step = min(step, most / moved)
@@ -125,10 +135,16 @@ def _blocks(sweep: Sweep, rows: np.ndarray, radius: float) -> tuple[np.ndarray, 
     if constants.RANGE_OF_A_TURN * step > turn:  # False without a turn
         size = max(1, round(step / turn)) * turn / interval
         shortest = (size - 2.5) * interval
-    block = np.floor((time - time[0]) / (size * interval) + 1e-6)
+    return Grid(time[0], interval, size, shortest)
+
+
+def _blocks(time: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """First sample of every block by number, and the mask of the blocks that give a point: half of their samples are sound."""
+    block = np.floor((time - grid.start) / (grid.size * grid.interval) + 1e-6)
     first = np.r_[0, np.flatnonzero(np.diff(block)) + 1]
-    behind = np.r_[first[1:], len(rows)]
-    return first, (2.0 * (behind - first) >= size) & (time[behind - 1] - time[first] >= shortest)
+    behind = np.r_[first[1:], len(time)]
+    enough = (2.0 * (behind - first) >= grid.size) & (time[behind - 1] - time[first] >= grid.shortest)
+    return first, enough
 
 
 def _turn(sweep: Sweep, rows: np.ndarray, radius: float) -> float:

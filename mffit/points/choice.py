@@ -10,7 +10,7 @@ from mffit.points import constants
 from mffit.points.faulty import Fault, bridged, faults, short_gaps
 from mffit.points.mean import mean_and_error
 from mffit.points.steady import Scale, SteadySettings, stretches
-from mffit.points.stretch import MOVE, PLATEAU, Stretch
+from mffit.points.stretch import MOVE, PLATEAU, SWEEP, Stretch
 from mffit.scatter import beyond
 from mffit.sweeps import Sweep
 
@@ -33,13 +33,24 @@ def chosen(
     # Only to divide the recording: means take no sample that is bridged.
     sweep = bridged(sweep, (*SteadySettings._fields[1:], "Fy", "Mz"))
     if whole is None:
-        return _judged(sweep, _stretches(sweep, wrong, scale))
-    whole = bridged(_without_glitches(whole, ~np.isin(whole.line, sweep.line)), SteadySettings._fields[1:])
-    found = _stretches(whole, faults(whole), scale)
+        whole = sweep
+    else:
+        whole = bridged(
+            _without_glitches(whole, ~np.isin(whole.line, sweep.line)), SteadySettings._fields[1:]
+        )
+        wrong = faults(whole)
+    found = _behind_their_start(_stretches(whole, wrong, scale), settings_of(whole))
     begins = np.searchsorted(sweep.line, whole.line[[stretch.begin for stretch in found]])
     ends = np.searchsorted(sweep.line, whole.line[[stretch.end - 1 for stretch in found]], "right")
     kept = zip(found, begins.tolist(), ends.tolist(), strict=True)
-    return _judged(sweep, [s._replace(begin=begin, end=end) for s, begin, end in kept if end > begin])
+    return _judged(
+        sweep,
+        [
+            s._replace(begin=begin, end=end, recorded=(s.begin, s.end))
+            for s, begin, end in kept
+            if end > begin
+        ],
+    )
 
 
 def _without_glitches(whole: Sweep, left_out: np.ndarray) -> Sweep:
@@ -70,25 +81,30 @@ def _stretches(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[St
     return sorted(found)
 
 
+def _behind_their_start(found: list[Stretch], settings: SteadySettings) -> list[Stretch]:
+    """The stretches, each sweep without its first metres of rolling, which are a move."""
+    parted = []
+    for stretch in found:
+        begin = stretch.begin
+        if stretch.kind == SWEEP and not stretch.dropped:
+            begin = min(_rolled_from(begin, settings, stretch.end), stretch.end - 1)
+        if begin > stretch.begin:
+            parted.append(Stretch(stretch.begin, begin, ROLLING_IN, MOVE))
+        parted.append(stretch._replace(begin=begin))
+    return parted
+
+
 def _judged(sweep: Sweep, found: list[Stretch]) -> list[Stretch]:
-    """The stretches without their transients, or with the reason for dropping them."""
+    """The stretches, plateaus without their transients or with the reason for dropping them."""
     settings = settings_of(sweep)
     harmless = constants.HARMLESS_DRIFT * float(np.nanmedian(sweep.Fz))
     responses = [(sweep.Fy, harmless, "N")]
     if np.all(np.isfinite(sweep.Mz)):
         responses.append((sweep.Mz, constants.ARM * harmless, "Nm"))
-    tried = []
-    for stretch in found:
-        if stretch.dropped or stretch.kind == MOVE:
-            tried.append(stretch)
-        elif stretch.kind == PLATEAU:
-            tried.append(settled(stretch, settings, responses))
-        else:
-            begin = min(_rolled_from(stretch.begin, settings, stretch.end), stretch.end - 1)
-            if begin > stretch.begin:
-                tried.append(Stretch(stretch.begin, begin, ROLLING_IN, MOVE))
-            tried.append(stretch._replace(begin=begin))
-    return tried
+    return [
+        settled(stretch, settings, responses) if stretch.kind == PLATEAU and not stretch.dropped else stretch
+        for stretch in found
+    ]
 
 
 def _rolled_from(begin: int, settings: SteadySettings, end: int) -> int:
@@ -120,7 +136,7 @@ def settled(
         drift, error = _drift(x[begin : stretch.end])
         if abs(drift) > max(clear * error, harmless):
             return stretch._replace(dropped=f"still drifting by {drift:.3g} {unit}")
-    return Stretch(begin, stretch.end, transient=begin - stretch.begin)
+    return stretch._replace(begin=begin, transient=begin - stretch.begin)
 
 
 def _too_short(settings: SteadySettings, begin: int, end: int) -> str:

@@ -1,5 +1,6 @@
 """Points from one sweep: finished rows unchanged, recordings averaged over steady stretches and along moving sweeps."""
 
+from dataclasses import replace
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -52,6 +53,9 @@ def reduce(
             warnings=remarks.faulty(sweep, wrong),
             left_out=by_rule(sweep, lost, DRIVEN_RULE, DRIVEN),
         )
+    recorded = sweep
+    if whole is not None:
+        recorded, sweep = whole, replace(sweep, time=whole.time[np.isin(whole.line, sweep.line)])
     _check_time(sweep)
     wrong = faults(sweep)
     faulty = np.any([fault.which for fault in wrong], axis=0) if wrong else np.zeros(len(sweep), dtype=bool)
@@ -59,7 +63,12 @@ def reduce(
     labels = _labels(sweep, tried)
     giving = [s for kind in (PLATEAU, SWEEP) for s in tried if s.kind == kind and not s.dropped]
     named = [labels[stretch] for stretch in giving]
-    found = averaging.means(sweep, phi_t, giving, named, faulty, radius)
+    sound = ~np.isin(recorded.line, sweep.line[faulty])
+    grids = [
+        averaging.grid_of(recorded, begin + np.flatnonzero(sound[begin:end]), radius)
+        for begin, end in (stretch.recorded for stretch in giving)
+    ]
+    found = averaging.means(sweep, phi_t, giving, named, faulty, grids)
     number = dict(zip(giving, found.counts, strict=True))
     notes = tuple(remarks.note(sweep, s, labels[s], number.get(s, 0)) for s in tried)
     return Reduced(

@@ -18,6 +18,7 @@ class Stretch(NamedTuple):
     kind: str = PLATEAU  #: ``PLATEAU``: all settings rest; ``SWEEP``: one angle or the slip moves; ``MOVE``: anything else
     swept: str = ""  #: setting that a sweep moves: "alpha", "gamma", "kappa" or "Fz"; empty for other kinds
     transient: int = 0  #: number of samples before ``begin`` in which the settings rest and the forces settle
+    recorded: tuple[int, int] = (0, 0)  #: begin and end, counted with the samples that are left out by hand
 
     @property
     def rests_from(self) -> int:

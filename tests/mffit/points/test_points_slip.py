@@ -12,7 +12,7 @@ from flat_belt import RATE, SPEED, drive_recording, rolling_radius, write_mat73
 from mffit import config as configuration
 from mffit import points
 from mffit.points import make_points
-from mffit.points.averaging import _blocks
+from mffit.points.averaging import _blocks, grid_of
 from mffit.points.stretch import SWEEP
 
 SWEEP_S, REST_S = 6.0, 3.0
@@ -100,14 +100,16 @@ def slipping(rate: float) -> SimpleNamespace:
 def test_a_fast_sweep_is_averaged_over_no_more_of_slip_than_of_sideslip():
     """At a slip of 0.35 per second a tenth of a second would be 0.035; at 0.05 per second it is a turn of the wheel, if known."""
     for rate, radius, samples in ((0.35, 0.225, 2), (0.05, 0.225, 13), (0.05, np.nan, 10)):
-        first, gives = _blocks(slipping(rate), np.arange(200), radius)
+        sweep = slipping(rate)
+        first, gives = _blocks(sweep.time, grid_of(sweep, np.arange(200), radius))
         assert first[1] == samples
         assert gives[:-1].all()
 
 
 def test_a_mean_may_lack_half_of_its_samples_but_no_end_of_a_turn():
     def gives(rows, radius):
-        return _blocks(slipping(0.05), np.asarray(rows), radius)[1].tolist()
+        sweep, rows = slipping(0.05), np.asarray(rows)
+        return _blocks(sweep.time[rows], grid_of(sweep, rows, radius))[1].tolist()
 
     assert gives(range(25), 0.225) == [True, True]  # turns of 12.85 samples
     assert gives(range(24), 0.225) == [True, False]
