@@ -166,8 +166,8 @@ def unsettable(name: str) -> str:
 def _number(given: object, row: Parameter, key: str = "") -> float:
     """The number under a key of the coefficient's table; without a key, the value at which it is held.
 
-    Refuses values that are not finite or that the equations cannot take. A value beyond those of published tyres is a
-    declaration.
+    Refuses values that are not finite, that the equations cannot take, or whose sign they exclude. A value beyond those of
+    published tyres is a declaration.
     """
     if isinstance(given, str):
         quoted = NUMBER_IN_QUOTES.fullmatch(given)
@@ -181,6 +181,12 @@ def _number(given: object, row: Parameter, key: str = "") -> float:
         raise q.wrong(f"{given:g} is not a finite number; write one", key)
     if row.divisor and given == 0.0 and not key:
         raise q.wrong(f"0 is not possible, because the equations divide by {row.name}; correct it", key)
+    lower, upper = row.bounds
+    if given < 0.0 < lower or upper < 0.0 < given:
+        has, needs = ("negative", "positive") if given < 0.0 else ("positive", "negative")
+        raise q.wrong(
+            f"{given:g} is {has}, but the {row.description} is {needs} (ISO-W axes); correct the sign", key
+        )
     return float(given)
 
 

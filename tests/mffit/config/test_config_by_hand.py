@@ -36,6 +36,8 @@ WRONG = [
     ("PCY1 = " + 400 * "1", "PCY1", "has more digits than a number can have; correct it"),
     ("PCY1 = " + 5000 * "1", "PCY1", "has more digits than a number can have; correct it"),
     ("PCY1 = { min = -" + 400 * "1" + " }", "PCY1.min", "has more digits than a number can have; correct it"),
+    ("PDY1 = -5", "PDY1", "-5 is negative, but the lateral friction at nominal load is positive (ISO-W axes); correct the sign"),
+    ("PKY1 = { max = 9.0 }", "PKY1.max", "9 is positive, but the largest cornering stiffness over nominal load is negative"),
     ("PEY1 = nan", "PEY1", "nan is not a finite number; write one"),
     ("PEY1 = { max = inf }", "PEY1.max", "inf is not a finite number; write one"),
     ("PDY2 = { value = -0.1 }", "PDY2.u", "is missing; add one standard deviation of the value, or write PDY2 = -0.1 to hold it"),
