@@ -1,6 +1,7 @@
 """Tables and paragraphs in ASCII."""
 
 import re
+import shutil
 import textwrap
 from collections.abc import Iterable, Sequence
 
@@ -9,20 +10,39 @@ from mffit.rounding import ascii_only
 
 BLANK = re.compile(r"\n\s*\n")
 """What parts of a text have between them."""
+COMMAND, LABEL = re.compile(r"\s+mffit "), re.compile(r" *(?:\S.*? {2,})?")
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, left: int = 1) -> str:
-    """Columns below their headings; the first ``left`` columns are flush left, the others flush right."""
+    """Columns below their headings; the first ``left`` columns are flush left, the others flush right.
+
+    Columns beyond the width of the terminal follow below, beside the first again.
+    """
     cells = [[ascii_only(cell) for cell in row] for row in (head, *rows)]
     widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
+    parts, used = [list(range(left))], sum(widths[:left]) + 2 * (left - 1)
+    for i in range(left, len(head)):
+        if used + 2 + widths[i] > terminal_width() and parts[-1][left:]:
+            parts.append([0])
+            used = widths[0]
+        parts[-1].append(i)
+        used += 2 + widths[i]
+    return "\n\n".join(_columns_of(cells, widths, part, left) for part in parts)
+
+
+def _columns_of(cells: Sequence[Sequence[str]], widths: Sequence[int], part: Sequence[int], left: int) -> str:
+    """Some columns of a table with its headings."""
     lines = [
-        "  ".join(
-            c.ljust(w) if i < left else c.rjust(w) for i, (c, w) in enumerate(zip(row, widths, strict=True))
-        )
+        "  ".join(row[i].ljust(widths[i]) if i < left else row[i].rjust(widths[i]) for i in part)
         for row in cells
     ]
-    lines.insert(1, "  ".join("-" * w for w in widths))
+    lines.insert(1, "  ".join("-" * widths[i] for i in part))
     return "\n".join(line.rstrip() for line in lines)
+
+
+def terminal_width() -> int:
+    """Characters per line: those of the terminal, :data:`TERMINAL_WIDTH` at most and where there is none."""
+    return min(int(TERMINAL_WIDTH), shutil.get_terminal_size((int(TERMINAL_WIDTH), 1)).columns)
 
 
 def columns(text: str, left: int = 1) -> str:
@@ -34,8 +54,14 @@ def columns(text: str, left: int = 1) -> str:
 
 
 def blocks(parts: Iterable[str]) -> str:
-    """The parts that are not empty, with a blank line between them."""
-    return ascii_only("\n\n".join(part for part in parts if part))
+    """The parts that are not empty, with a blank line between them, within the terminal's width; a command is never broken."""
+    text = ascii_only("\n\n".join(part for part in parts if part))
+    return "\n".join(line if COMMAND.match(line) else _within(line) for line in text.split("\n"))
+
+
+def _within(line: str) -> str:
+    """A line, continued below its text if it is too long; the text is behind a label or an indent."""
+    return wrapped(line, others=" " * LABEL.match(line).end()) if len(line) > terminal_width() else line  # type: ignore[union-attr]
 
 
 def lines_left(*parts: str) -> int:
@@ -65,7 +91,7 @@ def paragraphs(sentences: Sequence[str]) -> str:
 
 def wrapped(sentence: str, first: str = "", others: str = "") -> str:
     """A sentence in lines of the terminal's width; ``first`` and ``others`` are indents."""
-    return textwrap.fill(sentence, TERMINAL_WIDTH, initial_indent=first, subsequent_indent=others)
+    return textwrap.fill(sentence, terminal_width(), initial_indent=first, subsequent_indent=others)
 
 
 def steps(commands: Sequence[tuple[str, str]]) -> str:

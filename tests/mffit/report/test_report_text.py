@@ -7,11 +7,13 @@ import re
 from dataclasses import replace
 from types import SimpleNamespace
 
+import pytest
+
 from mffit.measured import Contribution, align
 from mffit.measured.result import FINITE_SPIN
 from mffit.report import text
 from mffit.report.constants import MOST_REASONS
-from mffit.report.text.layout import columns
+from mffit.report.text.layout import columns, table
 from mffit.report.verdict import verdict
 from mffit.rounding import ascii_only, decimals_of, stated
 from mffit.suspicion import Trust
@@ -136,14 +138,25 @@ def test_the_terminal_states_one_cornering_stiffness(result):
         assert len(re.findall(r"\bC_alpha", said)) <= 1
 
 
-def test_terminal_text_is_ascii_and_fits_a_line(result):
+@pytest.mark.parametrize("width", [60, 80, 100])
+def test_terminal_text_is_ascii_and_fits_a_line(result, monkeypatch, width):
+    """A command stays whole, as a shell takes it."""
+    monkeypatch.setenv("COLUMNS", str(width))
+    command = f"mffit build {'a' * width}.toml"
     for summary in (
         text.spin_summary(result.measured),
-        text.build_summary(result),
+        text.build_summary(result, following=[(command, "what it does")]),
         text.build_explained(result),
     ):
         assert summary.isascii()
-        assert max(map(len, summary.splitlines())) <= 120
+        own = [line for line in summary.splitlines() if command not in line]
+        assert max(map(len, own)) <= width
+
+
+def test_columns_beyond_the_terminal_follow_below_beside_the_first(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "30")
+    parts = table(["name", *("abcdefgh" for _ in range(4))], [["Fy", "1", "2", "3", "4"]]).split("\n\n")
+    assert [part.splitlines()[-1].split() for part in parts] == [["Fy", "1", "2"], ["Fy", "3", "4"]]
 
 
 def test_estimates_without_an_uncertainty_have_the_digits_of_the_measured_one(result):
