@@ -33,7 +33,7 @@ from mffit.pipeline.left_out import left_out_by_fit
 from mffit.pipeline.measuring import measure, said
 from mffit.pipeline.on_road import on_road
 from mffit.pipeline.provenance import Annotate, annotator
-from mffit.pipeline.refining import fit_and_measure
+from mffit.pipeline.refining import fit_and_measure, refuse_exchanged_angles
 from mffit.points import Points
 from mffit.points.loading import Reading
 from mffit.prediction import (
@@ -88,6 +88,7 @@ def build(
         refuse_early(Path(out), names, inputs_of(config), project_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
         measured, fitted = fit_and_measure(config, read.reading, parts, before, read.base, progress)
+        refuse_exchanged_angles(config, read.reading, read.base, fitted, progress)
         progress(JUDGING)
         if ensemble:
             progress(f"drawing {ensemble} tyres from the posterior")

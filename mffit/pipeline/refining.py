@@ -6,7 +6,9 @@ import numpy as np
 
 from mffit import fit as fitting
 from mffit.comparison.characteristics import characteristics
-from mffit.config import Config
+from mffit.config import Config, axis_signs
+from mffit.config.loading import as_declared
+from mffit.errors import InputError
 from mffit.fit import FitResult
 from mffit.fit.coefficients import with_u
 from mffit.measured import Measured
@@ -20,6 +22,8 @@ from mffit.progress import Progress
 from mffit.quantities import KEYS, SIDEWAYS
 from mffit.rig import Simulation
 from mffit.rig_errors import NO_FAULTS
+from mffit.suspicion.all_files import angles_exchanged, angles_fit_exchanged
+from mffit.suspicion.rereadings import ANGLES_EXCHANGED
 from tir import Quantity, Tyre
 
 
@@ -53,6 +57,24 @@ def fit_and_measure(
         stated = {**fitted.coefficients, "PECP1": with_u(own, after.carried.pecp1.u)}
         fitted = replace(fitted, coefficients=stated)
     return after, fitted
+
+
+def refuse_exchanged_angles(
+    config: Config, reading: Reading, base: Tyre | None, fitted: FitResult, progress: Progress
+) -> None:
+    """Raise InputError if the readings look as if sideslip and camber were exchanged, and a fit to them read so agrees."""
+    if not any(True for _ in angles_exchanged.find(reading.points, config)):
+        return
+    points = ANGLES_EXCHANGED.undone(reading.points, axis_signs(config))
+    try:
+        parts, before = measure(config, points, base)
+        other = fitting.fit(config, points, parts, before, base, progress, reading.steps)
+    except InputError:
+        return
+    misfits = [{name: one.rmse for name, one in fit.channels.items()} for fit in (fitted, other)]
+    with as_declared(config):
+        for facts in angles_fit_exchanged.find(*misfits):
+            raise angles_fit_exchanged.refusal(facts)
 
 
 def _after(

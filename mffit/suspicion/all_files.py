@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import CAMBER_OF_SLOPES, FEWEST, HOTTEST_TREAD, STRAIGHT, UPRIGHT
+from mffit.constants import CAMBER_OF_SLOPES, EXPLAINED_SHARE, FEWEST, HOTTEST_TREAD, STRAIGHT, UPRIGHT
 from mffit.points import Points, levels
+from mffit.quantities import CHANNELS
 from mffit.suspicion import constants
 from mffit.suspicion.groups import readings_of
 from mffit.suspicion.rereadings import REVERSALS
-from mffit.suspicion.rule import Facts, Outcome, rule
+from mffit.suspicion.rule import Facts, Outcome, When, rule
 from mffit.suspicion.slopes import (
     SIGNS,
     Signatures,
@@ -120,6 +121,25 @@ def angles_exchanged(points: Points, config: Config) -> Iterator[Facts]:
     sideslip, camber = (slope(points, points.Fy, angle, used) for angle in ("alpha", "gamma"))
     if abs(camber.value) - camber.clear > abs(sideslip.value) + sideslip.clear:
         yield {"ratio": camber.value / sideslip.value}
+
+
+@rule(
+    id="angles-fit-exchanged",
+    when=When.AFTER,
+    sentence="alpha_deg and gamma_deg are exchanged: read the other way, the misfit of {channel} falls from {before:.3g} to "
+    "{after:.3g} {unit}; exchange them under [columns], or their headings",
+)
+def angles_fit_exchanged(before: Mapping[str, float], after: Mapping[str, float]) -> Iterator[Facts]:
+    """Misfit as read, where angles-exchanged asks, over that of a fit with the angles exchanged."""
+    if all(after[name] <= EXPLAINED_SHARE * before[name] for name in before):
+        name = min(before, key=lambda name: after[name] / before[name])
+        yield {
+            "channel": name,
+            "before": before[name],
+            "after": after[name],
+            "unit": CHANNELS[name].unit,
+            "column": "alpha_deg",
+        }
 
 
 @rule(

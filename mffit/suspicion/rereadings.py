@@ -124,6 +124,12 @@ REVERSALS: tuple[Mistake, ...] = (
     ),
 )
 """Signs of channels, alone or together, and the direction of rolling."""
+ANGLES_EXCHANGED = Mistake(
+    looks="sideslip and camber exchanged",
+    column="alpha_deg",
+    remedy="correct the headings alpha_deg and gamma_deg",
+    undone=partial(_swapped, fields=("alpha", "gamma")),
+)
 MISTAKES: tuple[Mistake, ...] = (
     *(_in_unit(*angle, unit="rad", expected="deg") for angle in (SIDESLIP, CAMBER)),
     _in_unit(*PRESSURE, unit="psi", expected="kPa"),
@@ -134,12 +140,7 @@ MISTAKES: tuple[Mistake, ...] = (
         remedy="correct the headings Fy_N and Mz_Nm",
         undone=partial(_swapped, fields=("Fy", "Mz")),
     ),
-    Mistake(
-        looks="sideslip and camber exchanged",
-        column="alpha_deg",
-        remedy="correct the headings alpha_deg and gamma_deg",
-        undone=partial(_swapped, fields=("alpha", "gamma")),
-    ),
+    ANGLES_EXCHANGED,
     *(_in_unit(*force, unit=unit, expected="N") for force in (LOAD, FORCE, DRIVE) for unit in ("kgf", "lbf")),
     *(
         _in_unit(*moment, unit=unit, expected="N m")

@@ -52,6 +52,7 @@ RULES: tuple[Rule, ...] = (
     all_files.weak_turn_slip,
     all_files.nominal_load_of_others,
     all_files.hot_tread,
+    all_files.angles_fit_exchanged,
     others.contradicting_sweep,
     others.doubtful_sweep,
     OUTLYING,

@@ -15,7 +15,7 @@ from mffit.points import Points
 from mffit.points.constants import UNLOADED
 from mffit.suspicion import constants
 from mffit.suspicion.groups import readings_of
-from mffit.suspicion.rereadings import MISTAKES
+from mffit.suspicion.rereadings import ANGLES_EXCHANGED, MISTAKES
 from mffit.suspicion.rule import Facts, Outcome, each_file, rule
 from mffit.suspicion.slopes import STILL, slope
 from tir.constants import CREDIBLE_FRICTION
@@ -213,19 +213,26 @@ def unusual_file(part: Points, config: Config) -> Iterator[Facts]:
 
 def _explained(found: list[Unusual], part: Points, config: Config) -> Iterator[Facts]:
     """The known mistakes without which the least is unusual, and nothing that was usual before; several only if they are units
-    of one column.
+    of one column, or the exchange of both angles.
     """
-    before, what, mistakes = {one.column for one in found}, found[0], []
+    before, what, mistakes, exchanged = {one.column for one in found}, found[0], [], ""
     for mistake in (one for one in MISTAKES if one.beyond_doubt):
         left = {one.column for one in unusual(mistake.undone(part, AS_READ), config, ASKED)}
         if left < before:
             before, mistakes = left, [mistake]
             what = next(one for one in found if one.column not in left)
+            exchanged = ""
+        elif mistakes and left == before and mistake is ANGLES_EXCHANGED:
+            exchanged = f". Or it looks like {mistake.looks}: {mistake.remedy}"
         elif mistakes and left == before and mistake.column == mistakes[0].column and mistakes[0].units:
             mistakes.append(mistake)
     if mistakes:
         first, *others = mistakes
         said = what.said if what.column == first.column else f"{what.column} {what.said}"
         also = "".join(f" or {other.units[0]}" for other in others if other.units)
-        looks = f"it looks like {first.looks}{also}: {first.remedy}" + ", with the true unit" * bool(also)
+        looks = (
+            f"it looks like {first.looks}{also}: {first.remedy}"
+            + ", with the true unit" * bool(also)
+            + exchanged
+        )
         yield {"column": first.column, "said": said, "looks": looks}

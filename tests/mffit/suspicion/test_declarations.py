@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 import re
+import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,12 +16,15 @@ from hypothesis import strategies as st
 
 from mffit import config as configuration
 from mffit.errors import InputError
+from mffit.pipeline import build
 from mffit.pipeline.inputs import read_points
 from mffit.points import make_points
 from mffit.recordings import sniff
 from mffit.suspicion.all_files import angles_exchanged, moment_reversed
+from mffit.suspicion.single_files import unusual_file
 from tir.conventions import FLIPPED
 
+SAMPLES = Path(__file__).parents[3] / "samples"
 COLUMNS = {"alpha": "alpha_deg", "Fy": "Fy_N", "Mz": "Mz_Nm"}
 
 
@@ -313,3 +318,25 @@ def test_sideslip_and_camber_exchanged_in_all_files_are_asked_for(project, excha
     assert [bool(re.search(r"Fy_N changes \d+ times as fast with gamma_deg", one)) for one in said] == [
         True
     ] * exchanged
+
+
+def test_angles_exchanged_in_all_files_are_named_because_a_fit_agrees_with_them_exchanged(tmp_path):
+    path = tmp_path / "belt" / "tyre.toml"
+    shutil.copytree(SAMPLES / "flat-track", path.parent)
+    columns = '[columns]\nalpha_deg = "gamma_deg"\ngamma_deg = "alpha_deg"\n\n'
+    path.write_text(path.read_text(encoding="utf-8").replace("[[sweep]]", f"{columns}[[sweep]]", 1))
+    with pytest.raises(InputError, match=r"are exchanged: .* falls from \d\d\.\d to 7\.\d+ N") as caught:
+        build(path)
+    assert caught.value.column == "alpha_deg"
+
+
+def test_the_angles_of_a_zero_exchanged_may_be_what_makes_it_steep_in_camber(project):
+    points = read_points(configuration.load(project.write())).points
+    zeros = points.select((points.gamma == 0.0) & (np.abs(points.alpha) <= np.radians(1.0)))
+    config = configuration.load(project.write())
+    swapped = zeros.replace(alpha=zeros.gamma, gamma=zeros.alpha)
+    facts = next(iter(unusual_file.find(swapped, config)))
+    assert "its camber in rad" in facts["looks"]
+    assert facts["looks"].endswith(
+        "Or it looks like sideslip and camber exchanged: correct the headings alpha_deg and gamma_deg"
+    )
