@@ -8,8 +8,7 @@ The modules in the order of the method (:mod:`engine` is the sequence):
 4. ``needs``, ``problem``, ``hypothesis``: candidates, and the fit and evidence of a set of effects.
 5. ``search``, ``explain``: all effects fitted together, then the noise around them: ``scatter``, ``tails``
    estimate its size, its autocorrelation and offsets of runs. ``selection`` finds the most probable set of effects from the
-   evidence of all sets (``subsets``), in competition with unnamed structure (``smooth``, ``bumps``); ``prediction`` judges
-   effects by left-out sweeps.
+   evidence of all sets (``subsets``), in competition with unnamed structure (``smooth``, ``bumps``).
 6. ``estimated``: the numbers of the effects and their standard errors. ``rest``: what remains with them, the four answers.
 7. ``validation``, ``repair``: the gap on left-out sweeps, and the effects and the file that are corrected.
 8. ``ties``, ``limits``: rivals of each effect, the run that separates them, sizes that are excluded.

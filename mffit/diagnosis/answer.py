@@ -196,9 +196,6 @@ class Judgement(NamedTuple):
 def _judged(found: Explanation, effect: Effect) -> Judgement:
     """The confidence in an effect, and its ties."""
     step = found.contests[found.chosen.effects.index(effect)]
-    if effect.id in found.predicted:  # unnamed structure leaves evidence too weak to decide
-        tied, known = found.predicted[effect.id].tied, found.confidence(effect)
-        return Judgement(tied, [1.0] * len(tied), known / (1.0 + len(tied)), known)
     rivals = [trial for trial in step.fitted if trial.effects[-1].id not in found.chosen.ids]
     tied = tuple(rival for rival in rivals if _tied(found.chosen, rival))
     weight = {rival.ids: math.exp(min(-_lead(found.chosen, rival, rival in tied), 50.0)) for rival in rivals}
@@ -245,7 +242,7 @@ def _lead(chosen: Hypothesis, rival: Hypothesis, tied: bool) -> float:
 def not_accepted(found: Explanation) -> dict[str, float]:
     """Weights of the effects that explain something and were not accepted, the largest of all places.
 
-    A place is left out if the decision came from left-out sweeps instead of the evidence.
+    A place that would go to none of the accepted effects is left out: there, another place or a declaration decided.
     """
     chosen, out = found.chosen, dict[str, float]()
     assert found.further is not None

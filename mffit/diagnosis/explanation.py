@@ -13,7 +13,6 @@ from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.imitation import is_no_imitation
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.prediction import Judged
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.diagnosis.selection import Contest, contest
 from mffit.diagnosis.smooth import Smooth
@@ -37,10 +36,6 @@ class Explanation(ReadOnlyArrays):
     freed: Inexactness = EXACT  #: prior of these numbers
     weights: Noise | None = None  #: noise of their estimate; None before it
     strained: bool = False  #: whether the coefficients of a build would have to move further than it explains
-    predicted: Mapping[str, Judged] = field(default_factory=dict)
-    """Support of each effect by left-out sweeps, if the effects were chosen by prediction."""
-    misfit: np.ndarray | None = None
-    """Measured minus simulated (c n,) of the given model, if it was fitted to these points and its misfit exceeds the noise."""
     nothing: Contest | None = None  #: all candidates as the only effect
     further: Contest | None = None  #: all candidates in addition to the chosen effects
     contests: tuple[Contest, ...] = ()  #: for each chosen effect, all candidates in its place
@@ -61,7 +56,7 @@ class Explanation(ReadOnlyArrays):
     def independent(self) -> Noise:
         """The scatter of the readings; without autocorrelation if structure remains, so that a model follows it if it can."""
         noise = self.scatter
-        if not self.smooth.found and self.misfit is None:
+        if not self.smooth.found:
             return noise
         scatter = {c: replace(s, memory=0.0, independent=0.0) for c, s in noise.scatter.items()}
         return replace(noise, scatter=scatter)
@@ -70,12 +65,9 @@ class Explanation(ReadOnlyArrays):
     def plain(self) -> DiagnosisProblem:
         """The problem in which coefficients are fitted instead of integrated out.
 
-        Its covariance excludes smooth structure, because a model predicts best if it follows the readings closely. The residuals
-        of a model that was fitted to these points count as noise, channel by channel, as in that fit.
+        Its covariance excludes smooth structure, because a model predicts best if it follows the readings closely.
         """
         noise = self.weights or self.independent
-        if self.misfit is not None:
-            noise = noise.at_least(self.misfit)
         return DiagnosisProblem(self.problem.points, self.problem.start, noise, self.problem.declared)
 
     @property
@@ -132,8 +124,6 @@ class Explanation(ReadOnlyArrays):
         Unnamed structure shows that there is such a cause. The probability of imitation follows from a comparison: how well do
         other effects imitate each effect of the library if that one is removed?
         """
-        if effect.id in self.predicted:
-            return self.predicted[effect.id].confidence
         against, share = self._weighed(effect)
         outside = self.bump.found or self.smooth.found
         acts = is_no_imitation(share, self.imitated) if outside else share

@@ -44,9 +44,6 @@ def checked(
 
     ``given`` has the pure scatter of the readings.
     """
-    # Without an effect, refitting coefficients to the points of their own fit repairs nothing.
-    if search.asked.seen and not found.chosen.effects:
-        found = found.withdrawn()
     validation = validate(
         given, found.refined, found.freed, weights=found.plain.noise, seen=search.asked.seen
     )

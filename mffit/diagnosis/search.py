@@ -72,11 +72,6 @@ class Search:
         return with_rig(self.inexact, self.declared, names)
 
     @cached_property
-    def misfit(self) -> np.ndarray:
-        """Measured minus simulated (c n,) of the given model."""
-        return self.stated.measured(self.points) - self.start.predict(self.points, self.channels)
-
-    @cached_property
     def coarse(self) -> np.ndarray:
         """Smooth structure (c n, k) that noise may not be taken for."""
         return smooth_basis(self.points, self.start.readings(self.points, self.channels))

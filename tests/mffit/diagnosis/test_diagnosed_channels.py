@@ -9,9 +9,7 @@ import pytest
 
 import tir
 from mffit.diagnosis.bumps import bump_scan
-from mffit.diagnosis.inexact import EXACT
 from mffit.diagnosis.noise import Scatter
-from mffit.diagnosis.prediction import LeftOutPrediction
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.smooth import smooth_basis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
@@ -98,13 +96,6 @@ def test_smooth_structure_of_a_channel_stays_in_it(problem):
 def test_the_gap_of_a_given_model_needs_no_sweep_left_out(problem):
     check = validate(problem, problem.null)
     assert check.gap_before.rms("Mx") == pytest.approx(check.gap_after.rms("Mx"))
-
-
-def test_left_out_sweeps_are_predicted_in_every_channel(problem):
-    found = LeftOutPrediction(problem, EXACT).of(problem.null)
-    assert found.chi2.shape == (3, len(CHANNELS))
-    own = problem.null.residual.reshape(3, 3, 20) ** 2  # channel, sweep, point; nothing is free
-    assert found.chi2 == pytest.approx(own.sum(axis=2).T)
 
 
 @pytest.fixture(scope="module")

@@ -130,3 +130,10 @@ def test_a_tyre_with_less_grip_is_another_than_that_of_the_build(built_brush, tm
 
 def test_the_miss_of_the_formula_alone_is_no_effect(fitted_brush, tmp_path):
     assert_named(mffit.diagnose(brush.written(Brush(), tmp_path, 81), fitted_brush))
+
+
+def test_beside_the_miss_of_the_formula_the_points_of_its_own_fit_name_no_effect(built_brush):
+    found = mffit.diagnose(built_brush.parent.parent / "tyre.toml", built_brush)
+    assert_named(found)
+    assert not found.coefficients
+    assert found.trusted

@@ -47,7 +47,6 @@ def test_the_confidence_in_an_effect_is_its_share_of_the_evidence_of_all_that_ma
     found = SimpleNamespace(
         chosen=chosen,
         contests=[SimpleNamespace(fitted=[chosen, *rivals])],
-        predicted={},
         confidence=lambda effect: 0.9,
     )
     share = softmax([-5.0, -6.7, -7.2])[0]
