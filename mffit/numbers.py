@@ -12,7 +12,7 @@ import numpy as np
 
 from mffit.as_json import keys
 from mffit.brief import Brief
-from mffit.least_squares import inverse
+from mffit.least_squares import inverse, root
 from tir.frozen import ReadOnlyArrays
 
 ABOUT = (
@@ -70,6 +70,11 @@ class Numbers(ReadOnlyArrays, Brief):
         out[np.ix_(held, free)] = out[np.ix_(free, held)].T
         out[held, held] = known
         return out
+
+    @cached_property
+    def root(self) -> np.ndarray:
+        """A matrix R (k, k) with R @ R.T = covariance: its columns are changes by independent numbers of variance 1."""
+        return root(self.covariance)
 
     @cached_property
     def stderr(self) -> dict[str, float]:

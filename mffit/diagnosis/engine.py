@@ -75,7 +75,7 @@ def diagnose(
     progress("checking on left-out sweeps")
     given = DiagnosisProblem(examined, start, found.independent)
     found, validation, refused = _confirmed(found, given, search)
-    found = found if found.further is not None else found.contested()
+    found = found.contested()
     rest = (*beyond, *remaining(found))
     confirmed = Confirmed(found, given, named_effects(config, found, given), not_accepted(found), rest)
     done = repair(confirmed, validation, search)
@@ -130,7 +130,7 @@ def _search(
     inexact = asked.coefficients or declared_inexactness(tyre, config.model.u_coefficients)
     candidates, hidden = _candidates(asked.effects, points, start, known=inexact.names if asked.seen else ())
     declared = declared_priors(config, points, start, stated.channels)
-    zeros = [name for name in zeros_of_setups(points, stated.channels) if name in declared]
+    zeros = [name for name in zeros_of_setups(points, stated.channels) if declared.get(name, (0.0, 0.0))[1]]
     return Search(
         tyre=tyre,
         config=config,

@@ -12,16 +12,16 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.linalg import block_diag
 
 from mffit.constants import TWO_SIGMA
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
-from mffit.diagnosis.inexact import EXACT, Inexactness, slopes_of
+from mffit.diagnosis.inexact import EXACT, columns_of, known_around, slopes_of
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.search import Search
 from mffit.fit.stages import is_asymmetry
 from mffit.fit.told import Told, numbers_told
+from mffit.linearised.gaussian import Informed
 from mffit.numbers import Numbers
 from mffit.points.like import curves
 from mffit.rig_errors import error_of
@@ -34,13 +34,10 @@ def estimated(found: Explanation, search: Search) -> Explanation:
     near = DiagnosisProblem(found.problem.points, search.start, found.plain.noise, found.problem.declared)
     left = near.measured - near.predict(found.refined.state)
     plain = near.seen_through(near.noise.at_least(left))
-    beside = search.beside.without(frozenset(n for e in found.chosen.effects for n in e.parameters))
+    beside = search.beside.without({n for e in found.chosen.effects for n in e.parameters})
     freed = _freed(found, plain, beside, search.inexact.names)
     refined, coefficients = plain.refine(found.chosen, freed)
-    u = {
-        **refined.stderr,
-        **_standard_errors(found, plain, refined, beside.ordered(freed.names), len(freed.names)),
-    }
+    u = {**refined.stderr, **_standard_errors(found, plain, refined, beside, freed.names)}
     return replace(
         found,
         refined=replace(refined, stderr={name: u[name] for name in refined.stderr}),
@@ -51,9 +48,7 @@ def estimated(found: Explanation, search: Search) -> Explanation:
     )
 
 
-def _freed(
-    found: Explanation, plain: DiagnosisProblem, beside: Inexactness, known: Sequence[str]
-) -> Inexactness:
+def _freed(found: Explanation, plain: DiagnosisProblem, beside: Numbers, known: Sequence[str]) -> Numbers:
     """The numbers ``beside`` the effects that are estimated with them; all others stay as given, with their uncertainty.
 
     Calibrations look like the tyre and stay. Zeros, and on a disc asymmetries, would take up a model error, as in a build; beside
@@ -62,39 +57,37 @@ def _freed(
     """
     points, missed = plain.points, any(found.problem.amplitude.values())
     rig = {n: e for n in beside.names if n not in known and (e := error_of(n)) is not None}
-    free = beside.holding({n for n, e in rig.items() if missed or e.is_gain or not points.curved})
+    free = beside.given({n for n, e in rig.items() if missed or e.is_gain or not points.curved})
     if not missed:
-        ask = found.chosen.effects or _evidence(plain, found, free) > _evidence(plain, found, EXACT)
-        return free if ask else EXACT
+        columns = columns_of(free, plain.start, points, plain.channels)
+        told = Informed.of_rows(plain.noise.whiten(columns), plain.whitened(plain.start))
+        return free if found.chosen.effects or told.gain > 0.0 else EXACT
     if not found.smooth.found and not any(n in BY_NAME for e in found.chosen.effects for n in e.parameters):
         return EXACT
-    return free.holding({n for n in free.names if is_asymmetry(n)}) if points.curved else free
+    return free.given({n for n in free.names if is_asymmetry(n)}) if points.curved else free
 
 
 def _strained(plain: DiagnosisProblem, chosen: Hypothesis, search: Search) -> bool:
     """Whether the coefficients of a build would have to change forces by more than their uncertainty and its misfit explain."""
     left = search.asked.left
-    if not left or not search.inexact:
+    if not left or not search.inexact.names:
         return False
     given, free = (plain.refine(chosen, one)[0].state for one in (EXACT, search.inexact))
-    spread = np.sqrt(np.sum(search.inexact.columns(plain.points, given, plain.channels) ** 2, axis=1))
+    spread = np.sqrt(np.sum(columns_of(search.inexact, given, plain.points, plain.channels) ** 2, axis=1))
     moved, u = (plain.noise.by_channel(x) for x in (plain.predict(free) - plain.predict(given), spread))
     return any(rms(moved[n]) > TWO_SIGMA * math.hypot(left[n], rms(u[n])) for n in left if n in moved)
 
 
-def _evidence(plain: DiagnosisProblem, found: Explanation, prior: Inexactness) -> float:
-    """Log evidence of the effects estimated together with the numbers of a prior."""
-    return plain.evidence_at(plain.refine(found.chosen, prior)[0], prior)
-
-
 def _standard_errors(
-    found: Explanation, plain: DiagnosisProblem, refined: Hypothesis, beside: Inexactness, freed: int
+    found: Explanation, plain: DiagnosisProblem, refined: Hypothesis, beside: Numbers, freed: Sequence[str]
 ) -> dict[str, float]:
-    """By name, standard errors of the refined numbers and of those ``beside``, of which all but the last ``freed`` are held."""
+    """By name, standard errors of the refined numbers and of those ``beside``, of which all but the ``freed`` are held."""
     points, weights, scatter = plain.points, plain.noise, found.independent
-    numbers = plain.inside(refined)
-    names = [*(n.name for n in numbers), *beside.names]
-    unit = block_diag(np.eye(len(numbers)), beside.root)
+    known = plain.uncertain(refined, beside)
+    held = set(beside.names) - set(freed)
+    order = sorted(range(len(known.names)), key=lambda k: known.names[k] not in held)
+    names = [known.names[k] for k in order]
+    unit = np.linalg.qr(known.root[order].T)[1].T  # triangular: the last columns move no held number
     white = weights.whiten(slopes_of(refined.state, points, names, plain.channels) @ unit)
     noisy = white * (weights.beyond_weights * scatter.u[weights.used] / weights.u[weights.used])[:, None]
     left = np.nan_to_num(plain.measured - plain.predict(refined.state))
@@ -104,10 +97,7 @@ def _standard_errors(
         Told(white[own].T @ white[own], noisy[own].T @ noisy[own], white[own].T @ missed[own], none)
         for own in (of == k for k in np.unique(of))
     ]
-    values = np.append([n.start for n in numbers], np.zeros(len(beside.names)))
-    spread = np.append([n.spread for n in numbers], np.ones(len(beside.names)))
-    held = frozenset(beside.names[: len(beside.names) - freed])
-    priors = Numbers.beforehand(names, values, values, spread, held)
-    covariance = numbers_told(told, priors).covariance
+    units = replace(known_around(dict.fromkeys(names, 0.0), np.ones(len(names))), held=frozenset(held))
+    covariance = numbers_told(told, units).covariance
     variance = np.sum((unit @ covariance) * unit, axis=1)
     return dict(zip(names, np.sqrt(np.maximum(variance, 0.0)).tolist(), strict=True))

@@ -34,13 +34,13 @@ def explain(search: Search) -> Explanation:
         # Offsets of runs that were assumed in the noise but are not named are noise.
         noise = learned_noise(search, found.without_run_offsets, without_offsets=True)
         found = _selected_around(search, found.refined.state, noise, found.chosen)
-    if search.inexact:  # coefficients act otherwise where only the named effects act with them
+    if search.inexact.names:  # coefficients act otherwise where only the named effects act with them
         found = _selected_around(search, found.refined.state, noise, found.chosen)
     if search.asked.seen and found.smooth.found:
-        return found.withdrawn().contested()
+        return found.withdrawn()
     if found.chosen.effects and (found.bump.found or found.smooth.found):
         found = replace(found, imitated=imitations(found.problem, search.candidates))
-    return estimated(found, search).contested()
+    return estimated(found, search)
 
 
 def _all_at_once(search: Search) -> tuple[Simulation, Noise]:
@@ -58,7 +58,7 @@ def _all_at_once(search: Search) -> tuple[Simulation, Noise]:
             {} if read is None else {n: state.number(n, points) for e in alike for n in e.parameters}
         )
         together = DiagnosisProblem(points, start, shared, declared).fit_together(alike, at)
-        if search.inexact:
+        if search.inexact.names:
             plain = DiagnosisProblem(points, start, noise.alone(), declared)
             together, _ = plain.refine(together, search.inexact)
         before, state = read, together.state

@@ -11,12 +11,13 @@ import numpy as np
 from mffit.diagnosis.bumps import Bump, BumpScan
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.imitation import is_no_imitation
-from mffit.diagnosis.inexact import EXACT, Inexactness
+from mffit.diagnosis.inexact import EXACT
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.diagnosis.selection import Contest, contest
 from mffit.diagnosis.smooth import Smooth
 from mffit.effects import Effect
+from mffit.numbers import Numbers
 from mffit.rig import Simulation
 from tir.frozen import ReadOnlyArrays
 
@@ -33,10 +34,9 @@ class Explanation(ReadOnlyArrays):
     refined: Hypothesis  #: the chosen effects, estimated together with the coefficients of the model
     coefficients: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Estimates of what is uncertain of model and rig: name -> (value, standard error)."""
-    freed: Inexactness = EXACT  #: prior of these numbers
+    freed: Numbers = EXACT  #: prior of these numbers
     weights: Noise | None = None  #: noise of their estimate; None before it
     strained: bool = False  #: whether the coefficients of a build would have to move further than it explains
-    nothing: Contest | None = None  #: all candidates as the only effect
     further: Contest | None = None  #: all candidates in addition to the chosen effects
     contests: tuple[Contest, ...] = ()  #: for each chosen effect, all candidates in its place
     imitated: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -81,9 +81,7 @@ class Explanation(ReadOnlyArrays):
     def choosing(self, chosen: Hypothesis) -> Explanation:
         """The explanation with other effects, without estimated coefficients."""
         best = self.bumps.best(chosen)
-        return replace(
-            self, chosen=chosen, refined=chosen, bump=best, contests=(), further=None, weights=None
-        )
+        return replace(self, chosen=chosen, refined=chosen, bump=best, contests=(), weights=None)
 
     def only(self, effects: tuple[Effect, ...]) -> Explanation:
         """The explanation with some of its effects only, refitted."""
@@ -91,24 +89,21 @@ class Explanation(ReadOnlyArrays):
         return replace(self, problem=problem, bumps=self._bumps_in(problem)).choosing(chosen)
 
     def contested(self) -> Explanation:
-        """The explanation with all candidates tried alone, in addition to the chosen effects, and in the place of each."""
-        chosen, problem, candidates = self.chosen, self.problem, self.candidates
+        """The explanation with all candidates tried in addition to the chosen effects, and in the place of each."""
+        chosen, problem = self.chosen, self.problem
         without = [refitted(problem, chosen, chosen.others(effect)) for effect in chosen.effects]
-        nothing, further, *contests = (
-            contest(problem, before, candidates) for before in (problem.null, chosen, *without)
-        )
-        return replace(self, nothing=nothing, further=further, contests=tuple(contests))
+        all_chosen = chosen if chosen.effects else problem.null
+        further, *contests = (contest(problem, one, self.candidates) for one in (all_chosen, *without))
+        return replace(self, further=further, contests=tuple(contests))
 
-    def with_coefficients(self, inexact: Inexactness) -> Explanation:
+    def with_coefficients(self, inexact: Numbers) -> Explanation:
         """The explanation with all inexact coefficients estimated together with the effects: there it is linearised again."""
         return replace(self, refined=self.plain.refine(self.chosen, inexact)[0])
 
     def withdrawn(self) -> Explanation:
         """The explanation without effects and repair; the unnamed structure is still that found with the effects."""
         null = replace(self.problem.null, smooth=self.smooth)
-        return replace(
-            self, chosen=null, refined=null, coefficients={}, freed=EXACT, contests=(), further=self.nothing
-        )
+        return replace(self, chosen=null, refined=null, coefficients={}, freed=EXACT)
 
     def certainty(self, effect: Effect) -> float:
         """Probability of an effect against the best unnamed structure in its place.

@@ -7,10 +7,11 @@ from copy import copy
 from dataclasses import replace
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
-from mffit.diagnosis.inexact import EXACT, Inexactness, slopes_of
+from mffit.diagnosis.inexact import EXACT, known_around, slopes_of, together
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.priors import anchor, beyond_declaration, moving, number, starts, switched, usual_start
 from mffit.diagnosis.smooth import Smooth, SmoothStructure
@@ -19,6 +20,7 @@ from mffit.fit.constants import REFIT_STEPS, STAGE_TOLERANCE
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve, touches
 from mffit.left_out import moved_without
 from mffit.linearised.gaussian import Informed
+from mffit.numbers import Numbers
 from mffit.points import Points
 from mffit.rig import Simulation
 from tir.parameters import BY_NAME as COEFFICIENTS
@@ -129,7 +131,7 @@ class DiagnosisProblem:
         return found if len(others) == len(effects) else self.fit_together(others, at)
 
     def refine(
-        self, chosen: Hypothesis, inexact: Inexactness = EXACT
+        self, chosen: Hypothesis, inexact: Numbers = EXACT
     ) -> tuple[Hypothesis, dict[str, tuple[float, float]]]:
         """The hypothesis estimated together with the model's coefficients, and these: name -> (value, standard error).
 
@@ -138,20 +140,16 @@ class DiagnosisProblem:
         """
         numbers, prior = self._refined_numbers(chosen, inexact)
         fixed, own = switched(chosen.effects), [n.name for n in numbers]
-        if not numbers and not prior:
+        if not numbers and not prior.names:
             return replace(chosen, state=self.start.with_numbers(fixed)), {}
         now = np.array([self.start.number(name, self.points) for name in prior.names])
         begin = np.linalg.pinv(prior.root) @ (now - prior.expected)
         units = [FreeNumber(n, x, spread=1.0) for n, x in zip(prior.names, begin.tolist(), strict=True)]
         plain = DiagnosisProblem(self.points, self.start, self.noise, self.declared)
-        found = solve(
-            plain.within(own, fixed, prior),
-            [*numbers, *units],
-            max_steps=REFIT_STEPS,
-            tolerance=STAGE_TOLERANCE,
-        )
-        values = {**fixed, **prior.numbers(own, found.x)}
-        errors = self._standard_errors(found, prior.unit(len(own)))
+        within = plain.within(own, fixed, prior)
+        found = solve(within, [*numbers, *units], max_steps=REFIT_STEPS, tolerance=STAGE_TOLERANCE)
+        values = {**fixed, **_named(own, prior, found.x)}
+        errors = self._standard_errors(found, _unit(own, prior))
         refined = replace(
             chosen,
             numbers={name: values[name] for name in (*fixed, *own)},
@@ -160,28 +158,17 @@ class DiagnosisProblem:
         )
         return refined, {name: (values[name], errors[name]) for name in prior.names}
 
-    def inside(self, refined: Hypothesis) -> list[FreeNumber]:
-        """The numbers of a refined hypothesis that are off their bounds."""
-        numbers, _ = self._refined_numbers(refined, EXACT)
-        return [n for n in numbers if not touches(n.start, n.lower, n.upper)]
-
-    def evidence_at(self, refined: Hypothesis, inexact: Inexactness) -> float:
-        """Log evidence of a refined hypothesis, up to a constant (Laplace approximation)."""
+    def uncertain(self, refined: Hypothesis, inexact: Numbers) -> Numbers:
+        """The numbers of a refined hypothesis that are off their bounds, then those of a prior, at their values there."""
         numbers, prior = self._refined_numbers(refined, inexact)
-        names = [*(n.name for n in numbers), *prior.names]
-        unit = prior.unit(len(numbers), [n.spread for n in numbers])
-        white = self.noise.whiten(slopes_of(refined.state, self.points, names, self.channels) @ unit)
-        moved = np.array([refined.state.number(name, self.points) for name in prior.names]) - prior.expected
-        away = np.append(
-            [(n.start - n.expected) / n.spread for n in numbers], np.linalg.pinv(prior.root) @ moved
+        inside = {n.name: n for n in numbers if not touches(n.start, n.lower, n.upper)}
+        own = known_around(
+            {name: n.expected for name, n in inside.items()}, [n.spread for n in inside.values()]
         )
-        left = self.whitened(refined.state)
-        square = float(left @ left) + float(away @ away)
-        return -0.5 * (square + Informed.of_rows(white, left).log_determinant)
+        found = together(own, prior)
+        return replace(found, values=np.array([refined.state.number(n, self.points) for n in found.names]))
 
-    def _refined_numbers(
-        self, chosen: Hypothesis, inexact: Inexactness
-    ) -> tuple[list[FreeNumber], Inexactness]:
+    def _refined_numbers(self, chosen: Hypothesis, inexact: Numbers) -> tuple[list[FreeNumber], Numbers]:
         """The numbers of the effects with widened priors, and the prior of all other coefficients."""
         frees = moving(chosen.effects)
         usual = [number(free, chosen.numbers, self.start, self.points) for free in frees]
@@ -189,31 +176,27 @@ class DiagnosisProblem:
             replace(n, spread=max(n.spread, abs(n.start - n.expected))) if n.name in COEFFICIENTS else n
             for n in usual
         ]
-        return numbers, inexact.without(frozenset(free.name for free in frees))
+        return numbers, inexact.without({free.name for free in frees})
 
     def without_groups(
-        self, refined: Hypothesis, inexact: Inexactness, group: np.ndarray
-    ) -> tuple[list[str], np.ndarray, list[np.ndarray]]:
+        self, refined: Hypothesis, inexact: Numbers, group: np.ndarray
+    ) -> tuple[Sequence[str], np.ndarray, list[np.ndarray]]:
         """Names (k,) of the numbers of a refined hypothesis, the derivatives (c n, k) of the readings by them, and their changes.
 
         By group of points, (n,) indices, the change (k,) if it is left out, to first order. Numbers at a bound are held.
         """
-        _, prior = self._refined_numbers(refined, inexact)
-        moved = self.inside(refined)
-        names = [*(n.name for n in moved), *prior.names]
-        mean = np.append([n.expected for n in moved], prior.expected)
-        away = np.array([refined.state.number(name, self.points) for name in names]) - mean
-        unit = prior.unit(len(moved), [n.spread for n in moved])
-        slopes = slopes_of(refined.state, self.points, names, self.channels)
-        white = self.noise.whiten(slopes @ unit)
+        known = self.uncertain(refined, inexact)
+        away = known.values - known.expected
+        slopes = slopes_of(refined.state, self.points, known.names, self.channels)
+        white = self.noise.whiten(slopes @ known.root)
         residual = -self.whitened(refined.state) - self.noise.whiten(slopes @ away)  # at the prior means
-        information, gradient = np.eye(len(names)) + white.T @ white, white.T @ residual
+        information, gradient = np.eye(len(away)) + white.T @ white, white.T @ residual
         of_row = np.tile(group, len(self.channels))[self.noise.used]
         changes = [
-            unit @ moved_without(white[rows], residual[rows], information, gradient) - away
+            known.root @ moved_without(white[rows], residual[rows], information, gradient) - away
             for rows in (np.flatnonzero(of_row == k) for k in range(int(group.max()) + 1))
         ]
-        return names, slopes, changes
+        return known.names, slopes, changes
 
     def columns(self, state: Simulation, effects: Sequence[Effect]) -> dict[Effect, list[np.ndarray]]:
         """By effect, changes of the readings (c n, k) at its usual size: by derivatives, and by finite steps to each start."""
@@ -313,16 +296,16 @@ class DiagnosisProblem:
         return dict(zip(found.names, np.sqrt(variance).tolist(), strict=True))
 
     def within(
-        self, names: Sequence[str], fixed: Mapping[str, float], prior: Inexactness = EXACT
+        self, names: Sequence[str], fixed: Mapping[str, float], prior: Numbers = EXACT
     ) -> LeastSquaresProblem:
         """The least-squares problem of the whitened residual, simulated minus measured, in the named numbers.
 
         Further numbers, independent and with prior variance 1, move the coefficients of ``prior``.
         """
-        nothing, every, unit = np.zeros(0), [*names, *prior.names], prior.unit(len(names))
+        nothing, every, unit = np.zeros(0), [*names, *prior.names], _unit(names, prior)
 
         def at(x: np.ndarray) -> Simulation:
-            return self.start.with_numbers({**fixed, **prior.numbers(names, x)})
+            return self.start.with_numbers({**fixed, **_named(names, prior, x)})
 
         def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             return -self.whitened(at(x)), nothing
@@ -334,6 +317,17 @@ class DiagnosisProblem:
             return Linear(white[:, 0], white[:, 1:] @ unit, nothing, np.zeros((0, len(every))))
 
         return LeastSquaresProblem(residual, linear)
+
+
+def _unit(names: Sequence[str], prior: Numbers) -> np.ndarray:
+    """Changes (k, k) of the named numbers and of those of a prior by the numbers of a solution."""
+    return np.asarray(block_diag(np.eye(len(names)), prior.root))
+
+
+def _named(names: Sequence[str], prior: Numbers, x: np.ndarray) -> dict[str, float]:
+    """By name, the numbers of a solution (k,) and of its prior."""
+    own = prior.expected + prior.root @ x[len(names) :]
+    return dict(zip((*names, *prior.names), [*x[: len(names)].tolist(), *own.tolist()], strict=True))
 
 
 def not_too_steep(columns: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ import numpy as np
 
 from mffit.constants import ASSUMED_NOISE_SHARE, FEWEST_SWEEPS_TO_PREDICT
 from mffit.diagnosis import constants
+from mffit.diagnosis.inexact import columns_of
 from mffit.diagnosis.noise import MemorySpan, Noise, RunOffsets, Scatter
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.search import Search
@@ -174,7 +175,11 @@ def learned_noise(search: Search, state: Simulation, *, without_offsets: bool = 
     others = [g for e, groups in columns.items() if not e.differs_by_run for g in groups]
     generous = constants.GENEROUS_EFFECT_SIZE
     named = np.column_stack(
-        [nothing, *(generous * g for g in others), search.inexact.columns(points, state, problem.channels)]
+        [
+            nothing,
+            *(generous * g for g in others),
+            columns_of(search.inexact, state, points, problem.channels),
+        ]
     )
     explained = ExplainingColumns(named=named, runs=runs, smooth=search.coarse, withdrawn=without_offsets)
     return learned(stated, residual, explained, predicted)

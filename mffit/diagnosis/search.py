@@ -10,13 +10,14 @@ import numpy as np
 
 from mffit.config import Config
 from mffit.constants import TWO_SIGMA
-from mffit.diagnosis.inexact import Inexactness, with_rig
+from mffit.diagnosis.inexact import columns_of, slopes_of, with_rig
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import NotVisible, OneSweep
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.smooth import smooth_basis
 from mffit.effects import CATALOG, Effect
 from mffit.linearised.constants import DIVISIONS_OF_A_SWEEP
+from mffit.numbers import Numbers
 from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.scatter import rms
@@ -30,7 +31,7 @@ class Asked:
     rig: Mapping[str, float] | None = None
     """Known rig errors, of the rig or of a set-up; None: the declared play alone."""
     effects: Sequence[Effect] = CATALOG  #: to be tried
-    coefficients: Inexactness | None = None
+    coefficients: Numbers | None = None
     """Prior of the model's coefficients; None: from ``model.u_coefficients``."""
     seen: bool = False  #: whether the model was fitted to these points
     left: Mapping[str, float] = field(default_factory=dict)
@@ -57,7 +58,7 @@ class Search:
     stated: Noise
     candidates: tuple[Effect, ...]
     hidden: tuple[NotVisible | OneSweep, ...]  #: why the other effects are not candidates
-    inexact: Inexactness
+    inexact: Numbers
     declared: Mapping[str, tuple[float, float]]
     """Value and standard uncertainty of each declared rig error."""
 
@@ -66,7 +67,7 @@ class Search:
         return self.stated.channels
 
     @cached_property
-    def beside(self) -> Inexactness:
+    def beside(self) -> Numbers:
         """The prior of the inexact coefficients and of every declared rig error."""
         names = [n for n, (_, u) in self.declared.items() if u > 0.0 and n not in self.inexact.names]
         return with_rig(self.inexact, self.declared, names)
@@ -84,7 +85,7 @@ class Search:
 
     def shared(self, noise: Noise, state: Simulation) -> Noise:
         """The noise together with the changes by inexact coefficients, linearised at a simulation."""
-        return noise.sharing(self.inexact.columns(self.points, state, self.channels))
+        return noise.sharing(columns_of(self.inexact, state, self.points, self.channels))
 
     def problem(self, state: Simulation, noise: Noise, effects: Sequence[Effect]) -> DiagnosisProblem:
         """The readings with coefficients linearised at a simulation and integrated out, in addition to smooth structure.
@@ -95,7 +96,13 @@ class Search:
         names = [name for name in self.inexact.names if name not in changed]
         numbers = {name: state.number(name, self.points) for name in names}
         at = self.start.with_numbers(numbers) if numbers and state is not self.start else self.start
-        moved = None if at is self.start else self.inexact.moved(self.points, state, at, self.channels)
+        moved = None
+        if at is not self.start:
+            away = (
+                np.array([at.number(name, self.points) for name in self.inexact.names])
+                - self.inexact.expected
+            )
+            moved = slopes_of(state, self.points, self.inexact.names, self.channels) @ away
         return DiagnosisProblem(
             self.points, at, self.shared(noise, state), self.declared, moved, self.structure, self.allowed
         )

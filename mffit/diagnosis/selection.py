@@ -34,10 +34,6 @@ class Contest:
         return self.best.log_evidence - self.before.log_evidence
 
     @property
-    def passes(self) -> bool:
-        return self.gain > self.threshold
-
-    @property
     def fitted(self) -> tuple[Hypothesis, ...]:
         """The trials that were fitted in full."""
         return tuple(one for one in self.trials if one.state is not self.before.state)

@@ -10,9 +10,10 @@ import numpy as np
 from mffit.as_json import keys
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
-from mffit.diagnosis.inexact import EXACT, Inexactness, slopes_of
+from mffit.diagnosis.inexact import EXACT, slopes_of
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.numbers import Numbers
 from mffit.points import Points
 from mffit.quantities import column
 from mffit.rig import Simulation
@@ -88,7 +89,7 @@ def raw_gap(points: Points, given: Simulation, judged: np.ndarray, noise: Noise)
 def validate(
     problem: DiagnosisProblem,
     hypothesis: Hypothesis,
-    inexact: Inexactness = EXACT,
+    inexact: Numbers = EXACT,
     *,
     weights: Noise | None = None,
     seen: bool = False,
@@ -106,7 +107,7 @@ def validate(
     fits = problem.seen_through(weights or problem.noise)
     within_runs = any(effect.differs_by_run for effect in hypothesis.effects)
     group = _part_of_run(points.file) if within_runs else np.unique(points.sweep, return_inverse=True)[1]
-    if (hypothesis.effects or inexact) and group.any():
+    if (hypothesis.effects or inexact.names) and group.any():
         after, given_file = _left_out(fits, hypothesis, inexact, group)
         if seen:
             before, _ = _left_out(fits, fits.refine(fits.null, inexact)[0], inexact, group)
@@ -124,7 +125,7 @@ def validate(
 
 
 def _left_out(
-    problem: DiagnosisProblem, hypothesis: Hypothesis, inexact: Inexactness, group: np.ndarray
+    problem: DiagnosisProblem, hypothesis: Hypothesis, inexact: Numbers, group: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Measured less predicted (c n,), with each group (n,) predicted from all others; and this for the given property file."""
     names, slopes, changes = problem.without_groups(hypothesis, inexact, group)

@@ -13,12 +13,13 @@ import numpy as np
 
 import tir
 from mffit.config import Config
-from mffit.diagnosis.inexact import Inexactness, correlated, refitted
+from mffit.diagnosis.inexact import refitted
 from mffit.diagnosis.search import Asked
 from mffit.fit import FitResult, plain_use
 from mffit.fit.influences.nuisances import of_run
 from mffit.made import Made
 from mffit.measured import Measured
+from mffit.numbers import Numbers
 from mffit.pipeline.inputs import input_hashes
 from mffit.quantities import DIRECT, KEYS
 from mffit.results import TEMPERATURE
@@ -147,7 +148,7 @@ def known_of_model(tyre: Tyre, config: Config, path: Path | None, *, same: bool,
     return Asked(coefficients=None if config.model.u_coefficients else posterior, left=_left(result))
 
 
-def posterior_of(tyre: Tyre, path: Path) -> Inexactness | None:
+def posterior_of(tyre: Tyre, path: Path) -> Numbers | None:
     """The posterior of the build that wrote a file; None if no build did or the file was edited."""
     return _posterior(_result_of(tyre, path))
 
@@ -168,7 +169,7 @@ def _result_of(tyre: Tyre, path: Path) -> dict[str, Any]:
     return result if same else {}
 
 
-def _posterior(result: Mapping[str, Any]) -> Inexactness | None:
+def _posterior(result: Mapping[str, Any]) -> Numbers | None:
     """The posterior of the coefficients that a result states; None without one."""
     try:
         posterior, values = result["fit"]["posterior"], result["fit"]["coefficients"]
@@ -177,7 +178,7 @@ def _posterior(result: Mapping[str, Any]) -> Inexactness | None:
         covariance = np.array(posterior["covariance"], dtype=float)[np.ix_(rows, rows)]
     except (ValueError, KeyError, TypeError, IndexError):
         return None
-    return correlated(names, np.array([values[n]["value"] for n in names]), covariance) if names else None
+    return Numbers.of(names, np.array([values[n]["value"] for n in names]), covariance) if names else None
 
 
 def _left(result: Mapping[str, Any]) -> dict[str, float]:

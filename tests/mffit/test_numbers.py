@@ -54,6 +54,7 @@ def test_a_prior_mean_moves_the_values_as_a_new_fit_would():
 def test_known_and_unasked_numbers_condition_and_marginalise():
     numbers, _ = drawn(5)
     whole = numbers.covariance
+    assert numbers.root @ numbers.root.T == pytest.approx(whole)
     kept, out = [0, 1, 3], 2
     assert numbers.without(["F0_N"]).covariance == pytest.approx(whole[np.ix_(kept, kept)])
     across = np.outer(whole[kept, out], whole[out, kept]) / whole[out, out]

@@ -140,14 +140,6 @@ def test_weights_are_evidence_times_prior_and_add_up():
     assert sum(found.values()) == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize(("value", "passes"), [(3.9, False), (4.1, True)])
-def test_a_place_is_taken_from_its_threshold_on(value, passes):
-    found = contest(a=value)
-    assert found.passes is passes
-    assert found.gain == value
-    assert found.best.effects[0].id == "a"
-
-
 def test_a_coefficient_at_zero_is_likelier_to_be_missing():
     absent, present = TYRE.replace(PVY3=0.0), TYRE.replace(PVY3=0.4)
     effect = BY_ID["camber-thrust-curvature"]

@@ -12,7 +12,7 @@ from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
 from mffit import config
 from mffit.diagnosis import Asked, diagnose
 from mffit.diagnosis.bumps import _bells, bump_scan
-from mffit.diagnosis.inexact import declared
+from mffit.diagnosis.inexact import columns_of, declared
 from mffit.diagnosis.needs import MET, missing, possible
 from mffit.diagnosis.noise import Noise, Origin
 from mffit.diagnosis.notes import NotVisible
@@ -315,7 +315,9 @@ def test_sweeps_too_short_for_a_scatter_get_a_hundredth_of_the_span():
 
 def inexact_noise(points, u_coefficients) -> Noise:
     """The stated noise with inexact coefficients."""
-    return stated_noise(points).sharing(declared(TYRE, u_coefficients).columns(points, Simulation.of(TYRE)))
+    return stated_noise(points).sharing(
+        columns_of(declared(TYRE, u_coefficients), Simulation.of(TYRE), points)
+    )
 
 
 def covariance(noise):

@@ -12,7 +12,6 @@ from small_programme import LOADS, TYRE, U_FY, U_MZ
 from mffit.config import RigTable
 from mffit.diagnosis import Asked, answer, diagnose
 from mffit.diagnosis.answer import Judgement
-from mffit.diagnosis.inexact import correlated
 from mffit.effects import Effect, Free
 from mffit.points import make_points
 from mffit.rig import Simulation
@@ -53,21 +52,6 @@ def test_the_confidence_in_an_effect_is_its_share_of_the_evidence_of_all_that_ma
     judged = answer._judged(found, chosen.effects[0])
     assert judged.tied == ()
     assert judged.confidence == judged.together == pytest.approx(answer.tempered(0.9 * share))
-
-
-def test_a_prior_with_numbers_held_is_that_of_the_others_if_these_are_as_expected():
-    """PKY1 and PKY2 of standard deviations 1 and 2, correlated by 0.9: with PKY1 known, PKY2 keeps 2 sqrt(1 - 0.9^2)."""
-    prior = correlated(["PKY1", "PKY2"], np.array([10.0, 20.0]), np.array([[1.0, 1.8], [1.8, 4.0]]))
-    held = prior.holding({"PKY1"})
-    assert (held.names, held.expected.tolist()) == (("PKY2",), [20.0])
-    assert abs(held.root[0, 0]) == pytest.approx(2.0 * (1.0 - 0.9**2) ** 0.5)
-    for free in ({"PKY1"}, {"PKY2"}, set()):
-        turned = prior.ordered(free)
-        back = [turned.names.index(name) for name in prior.names]
-        assert (turned.root @ turned.root.T)[np.ix_(back, back)] == pytest.approx(
-            np.array([[1.0, 1.8], [1.8, 4.0]])
-        )
-        assert turned.root[0, 1] == pytest.approx(0.0)
 
 
 GRIP = Effect("grip", "friction", "tyre", "Another friction.", (Free("LMUY", 0.1, (0.0,), 0.3, 2.0),))

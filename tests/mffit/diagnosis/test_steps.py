@@ -57,7 +57,7 @@ def test_a_contest_ranks_the_hidden_effect_first(stiffer_camber):
     chosen = problem(case, points)
     step = contest(chosen, chosen.null, [BY_ID[i] for i in ("camber-grip", "camber-stiffness", "load-grip")])
     assert step.best.effects[-1].id == "camber-stiffness"
-    assert step.passes
+    assert step.gain > step.threshold
     assert step.weights()["camber-stiffness"] > 0.99
 
 
