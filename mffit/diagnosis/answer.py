@@ -225,12 +225,13 @@ def _tied(chosen: Hypothesis, rival: Hypothesis) -> bool:
     """Whether a rival explains the readings equally well.
 
     That is so if the evidence hardly differs, or if it differs moderately between effects that these readings are not expected to
-    separate. A rival that the likelihood does not exclude is tied as well: priors alone do not separate effects.
+    separate. A rival that the likelihood does not exclude is tied as well: priors alone do not separate effects. A rival that is
+    far ahead is no tie, but better.
     """
-    lead = chosen.log_evidence - rival.log_evidence
+    lead, most = chosen.log_evidence - rival.log_evidence, -math.log(constants.TIE_EXCLUDED_BY_CHANCE)
     alike = chosen.apart(rival) < constants.SEPARATING_CHI2
-    near = lead < (-math.log(constants.TIE_EXCLUDED_BY_CHANCE) if alike else constants.TIED_EVIDENCE)
-    return near or not chosen.excludes(rival, constants.TIE_EXCLUDED_BY_CHANCE)
+    near = lead < (most if alike else constants.TIED_EVIDENCE)
+    return lead > -most and (near or not chosen.excludes(rival, constants.TIE_EXCLUDED_BY_CHANCE))
 
 
 def _lead(chosen: Hypothesis, rival: Hypothesis, tied: bool) -> float:

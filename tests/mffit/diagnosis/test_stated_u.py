@@ -54,6 +54,14 @@ def test_the_confidence_in_an_effect_is_its_share_of_the_evidence_of_all_that_ma
     assert judged.confidence == judged.together == pytest.approx(answer.tempered(0.9 * share))
 
 
+@pytest.mark.parametrize(("lead", "tied"), [(2.9, True), (3.1, False)])
+def test_a_rival_that_is_likelier_than_chance_gives_is_no_tie_but_better(lead, tied):
+    chosen, rival = (
+        SimpleNamespace(log_evidence=x, apart=lambda _: 1.0, excludes=lambda *_: False) for x in (0.0, lead)
+    )
+    assert answer._tied(chosen, rival) is tied
+
+
 GRIP = Effect("grip", "friction", "tyre", "Another friction.", (Free("LMUY", 0.1, (0.0,), 0.3, 2.0),))
 
 
