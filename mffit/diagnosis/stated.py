@@ -9,7 +9,7 @@ import numpy as np
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import MemorySpan, Noise, Origin, Scatter
 from mffit.errors import InputError
-from mffit.fit.constants import NOMINAL_NOISE_SHARE
+from mffit.fit.weights import stated_or_nominal
 from mffit.points import Points
 from mffit.points.constants import GAP_OVER_STEP
 from mffit.points.noise import neighbour_noise
@@ -100,13 +100,6 @@ def _of_channel(
     if np.all(known[measured]):
         floor = constants.LEAST_STATED_NOISE_SHARE * np.median(stated[known][stated[known] > 0])
         return np.where(measured, np.maximum(stated, max(floor, least)), np.inf), Origin.STATED
-    u = np.where(known, stated, _neighbour_noise(points, values - simulated))
+    off = values - simulated
+    u = stated_or_nominal(np.where(known, np.maximum(stated, least), neighbour_noise(points, off)), off)
     return np.where(measured, np.maximum(u, least), np.inf), Origin.SCATTER
-
-
-def _neighbour_noise(points: Points, values: np.ndarray) -> float:
-    """Noise of a channel estimated from neighbouring points; a share of the span if sweeps are too short."""
-    noise = neighbour_noise(points, values)
-    if np.isnan(noise):
-        noise = NOMINAL_NOISE_SHARE * float(np.ptp(values[np.isfinite(values)]))
-    return max(noise, TINY)
