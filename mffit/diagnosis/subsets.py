@@ -26,9 +26,9 @@ class Member:
     """An effect as columns of the linear model; one effect may have several, from different finite steps."""
 
     effect: Effect
-    columns: slice
-    numbers: tuple[FreeNumber, ...]
-    """Its numbers with their priors; the columns are changes by one standard deviation of these. None for a switch."""
+    columns: range  #: among the inner products, of which the first is the residual
+    numbers: tuple[FreeNumber | None, ...]
+    """By column, the number with its prior of which the column is a change by one standard deviation; None for a switch."""
 
 
 Members = tuple[int, ...]
@@ -49,7 +49,7 @@ class LinearSets:
             n.name: n.expected for numbers in priors.values() for n in numbers if known.get(n.name) == 0.0
         }
         state = at.state.with_numbers(at_rest) if at_rest else at.state
-        rows, away, first = [problem.whitened(state)], [], 0
+        rows, away, first = [problem.whitened(state)], [], 1
         for effect, groups in problem.columns(state, candidates).items():
             numbers = priors[effect]
             moved = [known.get(n.name, 0.0) for n in numbers]
@@ -58,10 +58,11 @@ class LinearSets:
                 off = state.with_numbers({SWITCH: 0.0})
                 groups, moved = problem.columns(off, [effect])[effect], [1.0]
             for columns in groups[: 1 if present else None]:
-                self.members.append(Member(effect, slice(first, first + columns.shape[1]), numbers))
+                end = first + columns.shape[1]
+                self.members.append(Member(effect, range(first, end), numbers or (None,)))
                 rows.append(not_too_steep(problem.noise.whiten(columns)))
                 away.extend(moved or [0.0])
-                first += columns.shape[1]
+                first = end
         whole = np.column_stack(rows)
         whole[:, 0] += whole[:, 1:] @ np.array(away)
         self._products = whole.T @ whole
@@ -82,12 +83,8 @@ class LinearSets:
 
     def numbers(self, members: Members) -> dict[str, float]:
         """The most probable numbers of a set, within their bounds."""
-        found = iter(self._solved(members)[1].tolist())
-        return {
-            n.name: float(np.clip(n.expected + n.spread * x, n.lower, n.upper))
-            for k in members
-            for n, x in zip(self.members[k].numbers, found, strict=False)
-        }
+        found = self._values(members, self._solved(members)[1])
+        return {n.name: float(np.clip(value, n.lower, n.upper)) for n, value in found if n is not None}
 
     def weight(self, members: Members) -> float:
         """Log posterior of a set up to a constant: evidence, price of every effect, and prior order of causes."""
@@ -106,15 +103,15 @@ class LinearSets:
             self._known[members] = self._solve(members)
         return self._known[members]
 
-    def _columns(self, members: Members) -> list[int]:
-        """Indices among the inner products, the residual being the first, of the columns of a set."""
-        return [
-            1 + c for k in members for c in range(self.members[k].columns.start, self.members[k].columns.stop)
-        ]
+    def _values(self, members: Members, amounts: np.ndarray) -> list[tuple[FreeNumber | None, float]]:
+        """The number of every column of a set, and its value at the amounts (k,) of the columns."""
+        numbers = [n for k in members for n in self.members[k].numbers]
+        found = zip(numbers, amounts.tolist(), strict=True)
+        return [(n, x if n is None else n.expected + n.spread * x) for n, x in found]
 
     def _informed(self, members: Members) -> Informed:
         """The numbers of a set, in units of their priors, as the readings inform about them."""
-        columns = self._columns(members)
+        columns = [c for k in members for c in self.members[k].columns]
         return Informed.by(self._products[np.ix_(columns, columns)], self._products[columns, 0])
 
     def _solve(self, members: Members) -> tuple[float, np.ndarray]:
@@ -123,29 +120,13 @@ class LinearSets:
         if not members:
             return weight, np.zeros(0)
         found = self._informed(members)
-        for k, place in zip(members, self._places(members), strict=True):
-            for n, amount in zip(self.members[k].numbers, found.mean[place], strict=False):
-                value = n.expected + n.spread * float(amount)
+        over = np.zeros(len(found.mean))  # beyond the bounds, in standard deviations of the priors
+        for i, (n, value) in enumerate(self._values(members, found.mean)):
+            if n is not None:
                 weight += beyond_declaration(n, value, self.problem.declared)
-        return weight + found.gain - 0.5 * self._beyond_bounds(members, found), found.mean
-
-    def _places(self, members: Members) -> list[slice]:
-        """The columns of each member among those of the set."""
-        ends = np.cumsum(
-            [0, *(self.members[k].columns.stop - self.members[k].columns.start for k in members)]
-        )
-        return [slice(a, b) for a, b in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True)]
-
-    def _beyond_bounds(self, members: Members, found: Informed) -> float:
-        """Rise of the sum of squares if every number that is beyond its bound is moved back to it."""
-        x, over = found.mean, np.zeros(len(found.mean))
-        for k, place in zip(members, self._places(members), strict=True):
-            for i, n in enumerate(self.members[k].numbers):
-                value = n.expected + n.spread * float(x[place][i])
-                over[place.start + i] = max(n.lower - value, value - n.upper, 0.0) / n.spread
-        if not over.any():
-            return 0.0
-        return float(np.sum((over / found.u) ** 2))
+                over[i] = max(n.lower - value, value - n.upper, 0.0) / n.spread
+        moved_back = float(np.sum((over / found.u) ** 2)) if over.any() else 0.0
+        return weight + found.gain - 0.5 * moved_back, found.mean
 
     def taken_away(self, members: Members) -> Members:
         """The set without the effects that add less than they cost, dropped one by one, the least useful first."""
@@ -163,8 +144,9 @@ class LinearSets:
         V_bb, where V is the inverse of the information.
         """
         found = self._informed(members)
-        x, V, worth = found.mean, found.covariance, []
-        for k, place in zip(members, self._places(members), strict=True):
+        x, V, worth, end = found.mean, found.covariance, [], 0
+        for k in members:
+            place = slice(end, end := end + len(self.members[k].columns))
             own = V[place, place]
             worth.append(
                 self._price[k]
