@@ -1,4 +1,4 @@
-"""Numbers without a group of points to first order, from one linearised fit, and the choice of further numbers.
+"""Numbers without a group of points to first order, from one linearised fit, and what a gain on all groups is worth.
 
 No second fit is needed. Let J be the derivatives of a group's residuals r in units of their uncertainty, and C the covariance of
 the fit. Without the group the covariance is A^-1 with A = C^-1 - J^T J, and the numbers change by A^-1 J^T r (Belsley, Kuh and
@@ -8,7 +8,7 @@ Welsch, Regression Diagnostics, 1980, section 2.1, there with the hat matrix J C
 import numpy as np
 from scipy.special import ndtri
 
-from mffit import constants
+from mffit.constants import PREDICTION_FALSE_ALARM
 
 
 def moved_without(
@@ -18,12 +18,7 @@ def moved_without(
     return -np.linalg.solve(information - slopes.T @ slopes, gradient - slopes.T @ residual)
 
 
-def needed_fall(candidates: int) -> float:
-    """Improvement in standard errors that is significant for the best of several candidates."""
-    return float(-ndtri(constants.PREDICTION_FALSE_ALARM / max(candidates, 1)))
-
-
-def over_scatter(change: np.ndarray) -> float:
-    """Mean of the changes (s,) of groups over its standard error from their scatter; 0 without scatter."""
+def clearly_above_zero(change: np.ndarray) -> bool:
+    """Whether the mean of the changes (s,) of groups exceeds zero by more than their scatter explains."""
     error = float(np.std(change, ddof=1)) / np.sqrt(len(change))
-    return float(np.mean(change)) / error if error > 0.0 else 0.0
+    return bool(np.mean(change) > -ndtri(PREDICTION_FALSE_ALARM) * error > 0.0)

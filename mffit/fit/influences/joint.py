@@ -14,7 +14,6 @@ from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.fit.fitted import uncertain
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber
-from mffit.left_out import needed_fall, over_scatter
 from mffit.linearised.constants import POINTS_EXAMINED
 from mffit.linearised.mixed import HELD, FurtherColumns, LeftOutReadings, Mixed, Variances
 from mffit.rig_errors import BY_NAME
@@ -153,11 +152,6 @@ class JointFit(ReadOnlyArrays):
         of_row = np.tile(group[self.looked_at], len(self.channels))
         found = self.model.left_out(given, [np.flatnonzero(of_row == g) for g in np.unique(of_row)])
         return LeftOutGroups.of(found, self.sigma, self.channels)
-
-
-def clearly_above_zero(change: np.ndarray) -> bool:
-    """Whether the mean of changes (g,) exceeds zero by more than their scatter explains."""
-    return over_scatter(change) > needed_fall(1)
 
 
 def beyond_chance(gain: float, numbers: int, candidates: int = 1) -> bool:

@@ -13,10 +13,11 @@ from mffit.config import Config
 from mffit.constants import FEWEST_SWEEPS_TO_PREDICT
 from mffit.errors import InputError
 from mffit.fit.fitted import Fitted
-from mffit.fit.influences.joint import JointFit, LeftOutGroups, beyond_chance, clearly_above_zero
+from mffit.fit.influences.joint import JointFit, LeftOutGroups, beyond_chance
 from mffit.fit.influences.nuisances import NUISANCES, Nuisance
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber, solve
+from mffit.left_out import clearly_above_zero
 from mffit.points import Points
 from mffit.rig_errors import T_REF
 from mffit.suspicion import parts_of_sweeps

@@ -14,8 +14,9 @@ import mffit
 import tir
 from mffit import config as configuration
 from mffit.errors import InputError
-from mffit.fit.influences.joint import JointFit, beyond_chance, clearly_above_zero
+from mffit.fit.influences.joint import JointFit, beyond_chance
 from mffit.fit.influences.nuisance_choice import choose, halves_of_runs
+from mffit.left_out import clearly_above_zero
 from mffit.linearised.mixed import Mixed
 from mffit.points import make_points
 from mffit.report import verdict as shown
