@@ -56,7 +56,7 @@ class DiagnosisProblem:
         if offset is not None:
             self.measured = self.measured + offset
         self._at_amplitudes: dict[frozenset[tuple[str, float]], DiagnosisProblem] = {}
-        self.null = self.evaluate((), {})
+        self.null = self._fitted((), {})
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -82,7 +82,7 @@ class DiagnosisProblem:
         if key not in kept:
             other = copy(self)
             other.amplitude, other.noise = amplitude, self.structure.noise(amplitude)
-            other.null = other.evaluate((), {})
+            other.null = other._fitted((), {})
             while len(kept) >= constants.MOST_AMPLITUDES_KEPT:
                 del kept[next(iter(kept))]
             kept[key] = other
@@ -96,23 +96,6 @@ class DiagnosisProblem:
     def whitened(self, state: Simulation) -> np.ndarray:
         """Whitened residual (m,), measured minus simulated."""
         return self.noise.whiten(np.nan_to_num(self.measured - self.predict(state)))
-
-    def evaluate(self, effects: Sequence[Effect], numbers: Mapping[str, float]) -> Hypothesis:
-        """A hypothesis at given numbers, without a fit."""
-        state = self.start.with_numbers(numbers)
-        residual = self.whitened(state)
-        chi2 = float(residual @ residual)
-        found = Hypothesis(
-            effects=tuple(effects),
-            numbers=dict(numbers),
-            stderr={},
-            chi2=chi2,
-            log_evidence=-0.5 * chi2,
-            state=state,
-            residual=residual,
-            jacobian=np.empty((len(residual), 0)),
-        )
-        return self._weighed(found, ())
 
     def fit(self, effects: Sequence[Effect], start: Mapping[str, float] | None = None) -> Hypothesis:
         """The best fit of all numbers of the effects; the last effect starts from every value of its scan."""
@@ -139,21 +122,15 @@ class DiagnosisProblem:
         not pull the estimate back.
         """
         numbers, prior = self._refined_numbers(chosen, inexact)
-        fixed, own = switched(chosen.effects), [n.name for n in numbers]
-        if not numbers and not prior.names:
-            return replace(chosen, state=self.start.with_numbers(fixed)), {}
         now = np.array([self.start.number(name, self.points) for name in prior.names])
         begin = np.linalg.pinv(prior.root) @ (now - prior.expected)
         units = [FreeNumber(n, x, spread=1.0) for n, x in zip(prior.names, begin.tolist(), strict=True)]
-        plain = DiagnosisProblem(self.points, self.start, self.noise, self.declared)
-        within = plain.within(own, fixed, prior)
-        found = solve(within, [*numbers, *units], max_steps=REFIT_STEPS, tolerance=STAGE_TOLERANCE)
-        values = {**fixed, **_named(own, prior, found.x)}
-        errors = self._standard_errors(found, _unit(own, prior))
+        found, values, unit = self._solved(chosen.effects, [*numbers, *units], prior)
+        errors = self._standard_errors(found, unit)
         refined = replace(
             chosen,
-            numbers={name: values[name] for name in (*fixed, *own)},
-            stderr={name: errors[name] for name in own},
+            numbers={name: value for name, value in values.items() if name not in prior.names},
+            stderr={n.name: errors[n.name] for n in numbers},
             state=self.start.with_numbers(values),
         )
         return refined, {name: (values[name], errors[name]) for name in prior.names}
@@ -231,15 +208,8 @@ class DiagnosisProblem:
 
     def _fitted(self, effects: Sequence[Effect], start: Mapping[str, float]) -> Hypothesis:
         """The fit from one start, with its evidence (Laplace approximation)."""
-        fixed = switched(effects)
         numbers = [number(free, start, self.start, self.points) for free in moving(effects)]
-        found = solve(
-            self.within([n.name for n in numbers], fixed),
-            numbers,
-            max_steps=REFIT_STEPS,
-            tolerance=STAGE_TOLERANCE,
-        )
-        values = {**fixed, **found.values}
+        found, values, unit = self._solved(effects, numbers)
         occam = 0.0
         if numbers:
             scaled = found.jacobian * np.array([n.spread for n in numbers])
@@ -248,7 +218,7 @@ class DiagnosisProblem:
         hypothesis = Hypothesis(
             effects=tuple(effects),
             numbers=values,
-            stderr=self._standard_errors(found),
+            stderr=self._standard_errors(found, unit),
             chi2=float(found.data @ found.data),
             log_evidence=-0.5 * found.cost - occam + known,
             state=self.start.with_numbers(values),
@@ -285,49 +255,43 @@ class DiagnosisProblem:
         found = self.noise.directions.more(np.column_stack([at_centre, columns]))
         return found[:, 1:], found[:, 0]
 
-    def _standard_errors(self, found: Solution, unit: np.ndarray | None = None) -> dict[str, float]:
+    def _standard_errors(self, found: Solution, unit: np.ndarray) -> dict[str, float]:
         """By name, standard errors that include the effect of estimated outlier weights.
 
-        ``unit`` (k, k) are the changes of the named numbers by those of the solution, if they differ.
+        ``unit`` (k, k) are the changes of the named numbers by those of the solution.
         """
-        moves = found.covariance if unit is None else found.covariance @ unit.T
+        moves = found.covariance @ unit.T
         pull = self.noise.beyond_weights[:, None] * found.jacobian @ moves
         variance = np.sum(pull**2, axis=0) + found.prior @ moves**2
         return dict(zip(found.names, np.sqrt(variance).tolist(), strict=True))
 
-    def within(
-        self, names: Sequence[str], fixed: Mapping[str, float], prior: Numbers = EXACT
-    ) -> LeastSquaresProblem:
-        """The least-squares problem of the whitened residual, simulated minus measured, in the named numbers.
+    def _solved(
+        self, effects: Sequence[Effect], numbers: Sequence[FreeNumber], prior: Numbers = EXACT
+    ) -> tuple[Solution, dict[str, float], np.ndarray]:
+        """The solution in the numbers (k,), the values by name, and the changes (k, k) of these by the numbers.
 
-        Further numbers, independent and with prior variance 1, move the coefficients of ``prior``.
+        The last ``numbers``, independent and with prior variance 1, move those of ``prior``.
         """
-        nothing, every, unit = np.zeros(0), [*names, *prior.names], _unit(names, prior)
+        fixed, names, nothing = switched(effects), [n.name for n in numbers], np.zeros(0)
+        own = len(names) - len(prior.names)
+        centre, unit = np.append(np.zeros(own), prior.expected), block_diag(np.eye(own), prior.root)
 
-        def at(x: np.ndarray) -> Simulation:
-            return self.start.with_numbers({**fixed, **_named(names, prior, x)})
+        def values(x: np.ndarray) -> dict[str, float]:
+            return {**fixed, **dict(zip(names, (centre + unit @ x).tolist(), strict=True))}
 
         def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            return -self.whitened(at(x)), nothing
+            return -self.whitened(self.start.with_numbers(values(x))), nothing
 
         def linear(x: np.ndarray) -> Linear:
-            out, slope = at(x).sensitivities(self.points, every, self.channels)
+            state = self.start.with_numbers(values(x))
+            out, slope = state.sensitivities(self.points, names, self.channels)
             rows = np.column_stack([out.stacked - self.measured, slope.stacked])
             white = self.noise.whiten(np.nan_to_num(np.where(np.isfinite(self.measured)[:, None], rows, 0.0)))
-            return Linear(white[:, 0], white[:, 1:] @ unit, nothing, np.zeros((0, len(every))))
+            return Linear(white[:, 0], white[:, 1:] @ unit, nothing, np.zeros((0, len(names))))
 
-        return LeastSquaresProblem(residual, linear)
-
-
-def _unit(names: Sequence[str], prior: Numbers) -> np.ndarray:
-    """Changes (k, k) of the named numbers and of those of a prior by the numbers of a solution."""
-    return np.asarray(block_diag(np.eye(len(names)), prior.root))
-
-
-def _named(names: Sequence[str], prior: Numbers, x: np.ndarray) -> dict[str, float]:
-    """By name, the numbers of a solution (k,) and of its prior."""
-    own = prior.expected + prior.root @ x[len(names) :]
-    return dict(zip((*names, *prior.names), [*x[: len(names)].tolist(), *own.tolist()], strict=True))
+        problem = LeastSquaresProblem(residual, linear)
+        found = solve(problem, numbers, max_steps=REFIT_STEPS, tolerance=STAGE_TOLERANCE)
+        return found, values(found.x), unit
 
 
 def not_too_steep(columns: np.ndarray) -> np.ndarray:
