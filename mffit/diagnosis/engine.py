@@ -11,9 +11,7 @@ import numpy as np
 from mffit.config import Config, axis_signs, declared_faults
 from mffit.diagnosis.answer import answer, named_effects, not_accepted
 from mffit.diagnosis.conditions import by_condition
-from mffit.diagnosis.estimated import estimated
 from mffit.diagnosis.explain import explain
-from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.inexact import with_rig
 from mffit.diagnosis.needs import possible, without
@@ -35,7 +33,7 @@ from mffit.diagnosis.result import Diagnosis
 from mffit.diagnosis.search import NOTHING_KNOWN, Asked, Search
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
 from mffit.diagnosis.strangers import offsets_or_memory, refuse_strangers, without_noise
-from mffit.diagnosis.validation import Validation, raw_gap
+from mffit.diagnosis.validation import raw_gap
 from mffit.effects import Effect
 from mffit.fit.plan import channels_of
 from mffit.points import Points
@@ -74,7 +72,7 @@ def diagnose(
         found = found.withdrawn()
     progress("checking on left-out sweeps")
     given = DiagnosisProblem(examined, start, found.independent)
-    found, validation, refused = _confirmed(found, given, search)
+    found, validation, refused = checked(found, given, search)
     found = found.contested()
     rest = (*beyond, *remaining(found))
     confirmed = Confirmed(found, given, named_effects(config, found, given), not_accepted(found), rest)
@@ -89,24 +87,19 @@ def _notes(
 ) -> list[DiagnosisNote]:
     """What the reader of a diagnosis must know in addition to its effects."""
     found, left = confirmed.found, {name: search.asked.left[name] for name in search.allowed}
+    playing = int(np.sum(done.explanation.refined.state.floats(done.explanation.problem.points)))
     remarks = (
         *(TakenOff(sentence) for sentence in search.asked.taken_off),
         wrong,
         LeftByBuild(left) if found.smooth.expected and not confirmed.rest else None,
         without_noise(found.scatter),
         *offsets_or_memory(found.scatter, search.candidates, found.chosen.ids),
-        _within_play(done.explanation),
+        WithinPlay(playing) if playing else None,
         *search.hidden,
         refused,
         done.refused,
     )
     return [note for note in remarks if note is not None]
-
-
-def _within_play(found: Explanation) -> WithinPlay | None:
-    """The note on readings at which friction decides where the wheel rests; None without any."""
-    count = int(np.sum(found.refined.state.floats(found.problem.points)))
-    return WithinPlay(count) if count else None
 
 
 def _simulation(points: Points, tyre: Tyre, config: Config, rig: Mapping[str, float] | None) -> Simulation:
@@ -158,14 +151,3 @@ def _candidates(
     if len(np.unique(points.sweep)) < 2:
         return [], [*hidden, OneSweep()]
     return [e for e in candidates if not set(e.parameters) <= set(known)], [*hidden]
-
-
-def _confirmed(
-    found: Explanation, given: DiagnosisProblem, search: Search
-) -> tuple[Explanation, Validation, NoRepair | None]:
-    """The explanation if left-out sweeps confirm it, else its first effect alone, else none; its validation; the refusal."""
-    done, validation, refused = checked(found, given, search)
-    if refused is not None and len(found.chosen.effects) > 1:
-        first = estimated(found.only(found.chosen.effects[:1]), search)
-        done, validation, _ = checked(first, given, search)
-    return done, validation, refused

@@ -40,7 +40,7 @@ class Repair:
 def checked(
     found: Explanation, given: DiagnosisProblem, search: Search
 ) -> tuple[Explanation, Validation, NoRepair | None]:
-    """The explanation if left-out sweeps confirm it, else one without effects; its validation; and the refusal, if any.
+    """The explanation if left-out sweeps confirm it, else its first effect alone, else none; its validation; and the refusal.
 
     ``given`` has the pure scatter of the readings.
     """
@@ -50,6 +50,9 @@ def checked(
     if not (found.chosen.effects or found.coefficients) or validation.gain > 0.0:
         return found, validation, None
     refused = NoRepair(tuple(effect.name for effect in found.chosen.effects), validation)
+    if len(found.chosen.effects) > 1:
+        first = estimated(found.only(found.chosen.effects[:1]), search)
+        return (*checked(first, given, search)[:2], refused)
     return found.withdrawn(), validation.without_repair(), refused
 
 
