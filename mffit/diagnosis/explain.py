@@ -32,7 +32,8 @@ def explain(search: Search) -> Explanation:
     found = _selected_around(search, state, noise)
     if noise.offset and not noise.offset & found.chosen.ids:
         # Offsets of runs that were assumed in the noise but are not named are noise.
-        noise = learned_noise(search, found.without_run_offsets, without_offsets=True)
+        search = replace(search, candidates=tuple(e for e in search.candidates if e.id not in noise.offsets))
+        noise = replace(learned_noise(search, found.chosen.state), offsets=noise.offsets)
         found = _selected_around(search, found.refined.state, noise, found.chosen)
     if search.inexact.names:  # coefficients act otherwise where only the named effects act with them
         found = _selected_around(search, found.refined.state, noise, found.chosen)

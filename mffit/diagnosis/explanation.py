@@ -18,7 +18,6 @@ from mffit.diagnosis.selection import Contest, contest
 from mffit.diagnosis.smooth import Smooth
 from mffit.effects import Effect
 from mffit.numbers import Numbers
-from mffit.rig import Simulation
 from tir.frozen import ReadOnlyArrays
 
 
@@ -69,14 +68,6 @@ class Explanation(ReadOnlyArrays):
         """
         noise = self.weights or self.independent
         return DiagnosisProblem(self.problem.points, self.problem.start, noise, self.problem.declared)
-
-    @property
-    def without_run_offsets(self) -> Simulation:
-        """The simulation with its effects except offsets of runs, which compete again with autocorrelated errors."""
-        problem = self.problem
-        names = [n for effect in self.chosen.effects if effect.differs_by_run for n in effect.parameters]
-        given = {name: problem.start.number(name, problem.points) for name in names}
-        return self.chosen.state.with_numbers(given)
 
     def choosing(self, chosen: Hypothesis) -> Explanation:
         """The explanation with other effects, without estimated coefficients."""

@@ -49,7 +49,6 @@ class ExplainingColumns(ReadOnlyArrays):
     named: np.ndarray  #: effects and coefficients
     runs: Mapping[str, np.ndarray]  #: by id, effects that differ by run: rivals of autocorrelated errors
     smooth: np.ndarray  #: low-order structure, whose amplitude is estimated with the scatter
-    withdrawn: bool = False  #: whether effects that differ by run are excluded, however likely they are
 
 
 SIZE = SearchedParameter(0.0, -LARGEST, LARGEST, half_cauchy)
@@ -158,11 +157,8 @@ class ScatterOfChannel(ReadOnlyArrays):
         return ScatterOfChannel(terms, chains, self.sweep[rows])
 
 
-def learned_noise(search: Search, state: Simulation, *, without_offsets: bool = False) -> Noise:
-    """The noise with the scatter around ``state`` that remains if all candidates, coefficients and structure may explain it.
-
-    ``without_offsets``: runs have no offsets.
-    """
+def learned_noise(search: Search, state: Simulation) -> Noise:
+    """The noise with the scatter around ``state`` that remains if all candidates, coefficients and structure may explain it."""
     points = search.points
     stated = search.stated.without(state.floats(points))
     problem = DiagnosisProblem(points, state, stated)
@@ -181,8 +177,7 @@ def learned_noise(search: Search, state: Simulation, *, without_offsets: bool = 
             columns_of(search.inexact, state, points, problem.channels),
         ]
     )
-    explained = ExplainingColumns(named=named, runs=runs, smooth=search.coarse, withdrawn=without_offsets)
-    return learned(stated, residual, explained, predicted)
+    return learned(stated, residual, ExplainingColumns(named, runs, search.coarse), predicted)
 
 
 def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, size: np.ndarray) -> Noise:
@@ -195,10 +190,7 @@ def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, si
             continue
         channel = _channel(noise, np.nan_to_num(residual), explained, size, rows)
         runs = {n: _condensed(columns[rows], noise.stated[rows]) for n, columns in explained.runs.items()}
-        needed = constants.SURPRISING_LOG_ODDS + math.log(max(len(runs), 1))
-        found, channel, tails, here = _of_channel(
-            channel, runs, math.inf if explained.withdrawn else float(needed)
-        )
+        found, channel, tails, here = _of_channel(channel, runs)
         u[rows], weight[rows] = channel.described(found.by).uncertainty(found.x), channel.terms.weight
         memory = Memory.of(found.x)
         scatter[name] = Scatter(
@@ -269,14 +261,13 @@ def _at_least_of_a_rig(noise: Noise, size: np.ndarray) -> Noise:
 
 
 def _of_channel(
-    channel: ScatterOfChannel, runs: Mapping[str, np.ndarray], needed: float
+    channel: ScatterOfChannel, runs: Mapping[str, np.ndarray]
 ) -> tuple[Described, ScatterOfChannel, float, dict[str, RunOffsets]]:
     """The description of a channel, the channel with weights, its degrees of freedom, and offsets of runs by effect.
 
-    ``needed`` is the log Bayes factor that offsets need. Offsets are considered only if the errors are autocorrelated, because
-    only autocorrelation resembles them.
+    Offsets are considered only if the errors are autocorrelated, because only autocorrelation resembles them.
     """
-    plain = channel
+    plain, needed = channel, constants.SURPRISING_LOG_ODDS + math.log(max(len(runs), 1))
     found, channel, tails = _weighted(channel)
     offsets: dict[str, RunOffsets] = {}
     span = found[0].by.span
