@@ -31,9 +31,9 @@ from tir.parameters import BY_NAME
 
 def estimated(found: Explanation, search: Search) -> Explanation:
     """The explanation with the numbers of its effects estimated together with coefficients and rig errors that may move."""
-    near = DiagnosisProblem(found.problem.points, search.start, found.plain.noise, found.problem.declared)
-    left = near.measured - near.predict(found.refined.state)
-    plain = near.seen_through(near.noise.at_least(left))
+    noise, points = found.independent, found.problem.points
+    left = noise.measured(points) - found.refined.state.predict(points, noise.channels)
+    plain = DiagnosisProblem(points, search.start, noise.at_least(left), found.problem.declared)
     beside = search.beside.without({n for e in found.chosen.effects for n in e.parameters})
     freed = _freed(found, plain, beside, search.inexact.names)
     refined, coefficients = plain.refine(found.chosen, freed)

@@ -66,8 +66,7 @@ class Explanation(ReadOnlyArrays):
 
         Its covariance excludes smooth structure, because a model predicts best if it follows the readings closely.
         """
-        noise = self.weights or self.independent
-        return DiagnosisProblem(self.problem.points, self.problem.start, noise, self.problem.declared)
+        return self.problem.seen_through(self.weights or self.independent)
 
     def choosing(self, chosen: Hypothesis) -> Explanation:
         """The explanation with other effects, without estimated coefficients."""

@@ -68,8 +68,8 @@ class DiagnosisProblem:
         return state.predict(self.points, self.channels)
 
     def seen_through(self, noise: Noise) -> DiagnosisProblem:
-        """The problem with another noise, without smooth structure."""
-        return DiagnosisProblem(self.points, self.start, noise, self.declared, self.offset)
+        """The problem of the readings as they are, with another noise and without smooth structure."""
+        return DiagnosisProblem(self.points, self.start, noise, self.declared)
 
     def at_amplitude(self, smooth: Smooth) -> DiagnosisProblem:
         """The problem with the amplitudes of smooth structure, as found with a hypothesis, in the covariance."""
