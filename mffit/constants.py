@@ -111,9 +111,6 @@ NEARLY_CERTAIN = Real(0.99, "-", "Confidences above this are written as more tha
 PREDICTION_FALSE_ALARM = Real(
     0.01, "-", "Probability that chance lets any of several candidates, readings or sweeps pass (Bonferroni)."
 )
-LEAST_PREDICTED_SHARE = Real(
-    0.02, "-", "Share of the misfit that a candidate must remove; a channel that loses less is no worse."
-)
 FEWEST_SWEEPS_TO_PREDICT = Count(8, "-", "With fewer sweeps a gain cannot be separated from chance.")
 ODD_SWEEP_RATIO = Real(
     5.0, "-", "Rms misfit of a sweep over the median of all sweeps above which it is said to be the odd one."

@@ -74,6 +74,9 @@ MOST_SUSPECTS = Count(6, "-", "Most suspected sweeps, worst first, without which
 
 # The fitted model
 DISTRUSTED_MISFIT = Real(1.5, "-", "Misfit over stated noise above which a file is not trusted.")
+LEAST_SHARE_OF_A_LIMIT = Real(
+    0.02, "-", "Share of the misfit that is due to a number at a limit from which it counts against a build."
+)
 DOUBTFUL_SIGMA = Real(
     3.5, "-", "Standard deviations beyond which chance does not explain a misfit that is in doubt."
 )

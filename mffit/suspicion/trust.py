@@ -25,7 +25,6 @@ from mffit.constants import (
     CERTAIN_SIGMA,
     FALSE_ALARM,
     FEWEST,
-    LEAST_PREDICTED_SHARE,
     MISFIT_AT_NOISE,
     MOST,
     NAMED_IN_SENTENCE,
@@ -327,7 +326,7 @@ def held_against_data(fit: FinishedFit) -> Iterator[Facts]:
     stated = _noise_is_stated(fit)
     for held in fit.held:
         name, asked = held.name, not held.physical
-        certain = stated and held.sigma > CERTAIN_SIGMA and held.share > LEAST_PREDICTED_SHARE
+        certain = stated and held.sigma > CERTAIN_SIGMA and held.share > constants.LEAST_SHARE_OF_A_LIMIT
         if held.by_hand:
             certain = held.sigma > constants.DOUBTFUL_SIGMA
             asked = held.sigma <= CERTAIN_SIGMA or held.share <= MOST
