@@ -71,9 +71,7 @@ def with_known_zeros(
     if left.is_exact:
         return fitted, plan
     found = left.zeros
-    spread = {n.name: n.spread for n in plan.rig if n.name in found}
-    # Uncertainty with fixed coefficients, plus that caused by the coefficients, but at most the declared one.
-    u = {n: min(math.hypot(own, fitted.stderr[n]), spread[n]) for n, (_, own) in found.items()}
+    u = {name: own for name, (_, own) in found.items()}
     plan = replace(
         plan, rig=tuple(n for n in plan.rig if n.name not in found), held_rig={**plan.held_rig, **u}
     )

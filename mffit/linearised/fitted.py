@@ -227,6 +227,13 @@ class Uncertain(NamedTuple):
     held: bool = False  #: whether the fit took it as exact
 
 
+class Told(NamedTuple):
+    """What residuals tell of numbers (j,)."""
+
+    information: np.ndarray  #: (j, j)
+    pull: np.ndarray  #: (j,) score at the prior means
+
+
 @dataclass(frozen=True, eq=False)
 class LinearisedFit:
     """The linear models of all channels of a fit at its solution."""
@@ -246,38 +253,44 @@ class LinearisedFit:
     def zeros(self) -> dict[str, tuple[float, float]]:
         """By name, change and standard uncertainty of the fitted zeros of forces, estimated together with the model error.
 
-        Coefficients are fixed. The priors apportion a constant residual between a zero and the model error; all channels are used
-        together. Zeros of angles are excluded, because they shift the curves as the fixed coefficients do.
+        All other numbers with a prior that the fit did not hold are free: fixed coefficients keep what they took up of the model
+        error, such as a difference of driving and braking, and a zero would make up for it. Zeros of angles are excluded,
+        because they shift the curves as the coefficients do.
         """
-        rig = [number for number in self.numbers if _of_rig(number)]
-        free = np.array([_is_of_force(number) and not number.held for number in rig], dtype=bool)
-        zeros = [number for number, own in zip(rig, free, strict=True) if own]
-        information, pull = np.diag([number.spread**-2.0 for number in zeros]), np.zeros(len(zeros))
-        for channel in self.channels.values():
-            m = len(channel.missed)
-            model = _beside(channel.alone.model, rig, m, free)
-            found = channel.told_beside(model, model.common[:, m:])
-            information, pull = information + found.information, pull + found.pull
-        covariance = inverse(information)
-        change = np.array([number.expected for number in zeros]) + covariance @ pull
+        free = [i for i in self._with_prior if not self.numbers[i].held]
+        told = self._told(free)
+        covariance = inverse(told.information + np.diag([self.numbers[i].spread ** -2.0 for i in free]))
+        change = np.array([self.numbers[i].expected for i in free]) + covariance @ told.pull
         u = np.sqrt(np.diag(covariance))
-        return dict(zip([n.name for n in zeros], zip(change.tolist(), u.tolist(), strict=True), strict=True))
+        return {
+            self.numbers[i].name: (float(x), float(own))
+            for i, x, own in zip(free, change, u, strict=True)
+            if _is_of_force(self.numbers[i])
+        }
 
     def evidence_of(self, names: Collection[str]) -> float:
         """Gain of log evidence by the named numbers within their priors, beside the model error and all others with a prior."""
-        known = [i for i, number in enumerate(self.numbers) if np.isfinite(number.spread)]
-        numbers = [self.numbers[i] for i in known]
-        spread, expected = (np.array([getattr(n, key) for n in numbers]) for key in ("spread", "expected"))
-        information, pull = np.zeros((len(spread), len(spread))), np.zeros(len(spread))
-        for channel in self.channels.values():
-            turned = channel.model.common[:, len(channel.missed) :]
-            found = channel.told_beside(channel.model, turned @ np.linalg.inv(channel.turn)[:, known])
-            information, pull = information + found.information, pull + found.pull
-        pull = spread * (pull - information @ expected)
-        information = information * np.outer(spread, spread)
-        others = [i for i, number in enumerate(numbers) if number.name not in names]
+        known = self._with_prior
+        spread, told = np.array([self.numbers[i].spread for i in known]), self._told(known)
+        pull, information = spread * told.pull, told.information * np.outer(spread, spread)
+        others = [k for k, i in enumerate(known) if self.numbers[i].name not in names]
         without = Informed.by(information[np.ix_(others, others)], pull[others])
         return Informed.by(information, pull).gain - without.gain
+
+    @property
+    def _with_prior(self) -> list[int]:
+        """Indices of the numbers with a prior."""
+        return [i for i, number in enumerate(self.numbers) if np.isfinite(number.spread)]
+
+    def _told(self, which: Sequence[int]) -> Told:
+        """What the residuals of all channels tell of some numbers (j,) beside the model error, from their prior means."""
+        expected = np.array([self.numbers[i].expected for i in which])
+        information, pull = np.zeros((len(which), len(which))), np.zeros(len(which))
+        for channel in self.channels.values():
+            turned = channel.model.common[:, len(channel.missed) :]
+            found = channel.told_beside(channel.model, turned @ np.linalg.inv(channel.turn)[:, which])
+            information, pull = information + found.information, pull + found.pull
+        return Told(information, pull - information @ expected)
 
 
 def linearised(

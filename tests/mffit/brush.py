@@ -48,35 +48,60 @@ class Brush(NamedTuple):
     reduction: float = -0.1  #: camber reduction factor
     softening: float = -0.2  #: exponent of the load in the stiffness
     b: float = 0.0  #: half width of the contact [m]
+    drive: float = 1.0  #: stiffness of the bristles along the wheel over that across
+    carcass: float = (
+        np.inf
+    )  #: lateral stiffness, by which the side force moves the contact beside the wheel [N/m]
     r_e: float = 0.3  #: [m]
     nominal: float = 1700.0  #: load [N]
 
     def forces(
         self, alpha: np.ndarray, gamma: np.ndarray, Fz: np.ndarray, phi_t: float = 0.0, direction: float = 1.0
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Fy [N] and Mz [Nm] in ISO-W at angles [rad] and loads [N], each (n,), on a path of turn slip ``phi_t`` [1/m].
+        """Fy [N] and Mz [Nm] of the wheel that rolls freely; see :meth:`driven`."""
+        return self.driven(alpha, gamma, Fz, phi_t=phi_t, direction=direction)[1:]
 
-        Rolling backwards (``direction`` -1) mirrors the contact front to rear.
+    def driven(
+        self,
+        alpha: np.ndarray,
+        gamma: np.ndarray,
+        Fz: np.ndarray,
+        kappa: np.ndarray | float = 0.0,
+        phi_t: float = 0.0,
+        direction: float = 1.0,
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Fx, Fy [N] and Mz [Nm] in ISO-W at angles [rad], loads [N] and longitudinal slip, on a path of turn slip ``phi_t``.
+
+        All are (n,), ``phi_t`` is in 1/m. Rolling backwards (``direction`` -1) mirrors the contact front to rear.
         """
-        alpha, gamma, Fz = (np.asarray(x, dtype=float)[:, None] for x in (alpha, gamma, Fz))
+        alpha, gamma, Fz, kappa = (
+            np.asarray(x, dtype=float)[:, None] for x in np.broadcast_arrays(alpha, gamma, Fz, kappa)
+        )
         x = np.linspace(1.0, -1.0, 801)
         over = Fz / self.nominal
         a = self.a * np.sqrt(over)
         spin = phi_t - (1.0 - self.reduction) * np.sin(gamma) / self.r_e
         stiffness = self.stiffness * over**self.softening
-        sideways = stiffness * (a * (1.0 - x) * -np.tan(direction * alpha) + 0.5 * spin * a**2 * (1.0 - x**2))
+        slope = -np.tan(direction * alpha) / (1.0 + kappa)
+        sideways = stiffness * (a * (1.0 - x) * slope + 0.5 * spin * a**2 * (1.0 - x**2))
+        pulled = self.drive * stiffness * a * (1.0 - x) * kappa / (1.0 + kappa)
         shape = (1.0 - x**2) * (1.0 + self.crown * (1.0 - 5.0 * x**2) / 4.0)
-        grip = self.mu * (1.0 + self.mu_load * (over - 1.0)) / (1.0 + self.fading * np.abs(np.tan(alpha)))
+        grip = (
+            self.mu
+            * (1.0 + self.mu_load * (over - 1.0))
+            / (1.0 + self.fading * np.hypot(np.tan(alpha), kappa))
+        )
         most = grip * Fz * 0.75 / a * np.maximum(shape, 0.0)
         length = 2.0 * a[:, 0] / (len(x) - 1)
-        Fy, Mz = np.zeros(len(length)), np.zeros(len(length))
+        Fx, Fy, Mz = np.zeros((3, len(length)))
         strips = (0.0,) if self.b == 0.0 else self.b * np.array([-0.8, -0.4, 0.0, 0.4, 0.8])
         for y in strips:
-            along = -stiffness * spin * y * a * (1.0 - x)
+            along = pulled - stiffness * spin * y * a * (1.0 - x)
             held = np.minimum(1.0, most / np.maximum(np.hypot(along, sideways), 1e-9)) / len(strips)
+            Fx += (held * along).sum(axis=1) * length
             Fy += (held * sideways).sum(axis=1) * length
             Mz += (held * (sideways * a * x - along * y)).sum(axis=1) * length
-        return Fy, direction * Mz
+        return Fx, Fy, direction * Mz - Fx * Fy / self.carcass
 
 
 def sweeps() -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
