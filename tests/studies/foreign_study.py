@@ -77,7 +77,7 @@ NAMES = {
     "turning": "F0_direction_N", "load_odd": "load_camber_odd", "play": "backlash_deg", "give": "compliance_deg_per_Nm",
     "skew": "camber_skew_deg", "load_camber": "load_camber",
 }  # fmt: skip
-BEYOND = {"Fz_N": (0.15, 0.35, 1.7, 2.0), "alpha_deg": (-15.0, -11.0, 11.0, 15.0)}
+BEYOND = {"Fz_N": (0.15, 0.35, 1.65), "alpha_deg": (-15.0, -11.0, 11.0, 15.0)}
 """Conditions on the road that no rig went to; loads over the nominal one."""
 SLOPES = {
     "C_alpha_N_per_rad": (0, "alpha"), "C_gamma_N_per_rad": (0, "gamma"), "C_Mz_alpha_Nm_per_rad": (1, "alpha"),
