@@ -184,6 +184,8 @@ def test_unexplained_structure_is_at_the_top_with_its_place(unknown, tmp_path):
     alert = page.text.index("Something is missing that no effect of the library describes")
     assert alert < page.text.index("The gap, effect by effect")
     assert gap.framed(unknown, "Fy")[0] == unknown.unexplained_where[0]
+    lists = page.text.count("significance z")
+    assert lists == (2 if unknown.effects else 1)  # without an effect what remains is the misfit as given
 
 
 def test_without_moment_only_side_force_is_shown(tmp_path):
