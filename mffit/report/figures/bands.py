@@ -65,7 +65,7 @@ def _why_wide(view: BuildView, channel: str, rows: Sequence[Sequence[Panel]]) ->
     partner = build.fit.coefficients[cause].correlated_with
     with_it = f", which goes with {words.of_number(partner)}" if partner else ""
     return (
-        f"The band of {channel} is ±{number(least, digits=2)} {unit} or more at nominal load, beside a misfit of "
+        f"The band of {channel} is ±{number(least, digits=2)} {unit} or more at nominal load, wider than the misfit of "
         f"{number(agreement.rmse, digits=2)} {unit}, because the readings leave {cause} uncertain{with_it}."
     )
 

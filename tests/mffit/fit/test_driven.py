@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mffit.diagnosis.remains import Left, best_effect
+from mffit.diagnosis.wording import rival_of_formula
 from mffit.fit.by_hand import NO_HAND
 from mffit.fit.coverage import coverage
 from mffit.fit.fitted import Fitted, left_by
@@ -57,6 +58,9 @@ def test_an_undeclared_crosstalk_is_the_best_effect_in_the_residuals(found):
     assert best.best.effect.id == "crosstalk-fx-mx"
     assert best.significant
     assert not best.rivals
+    for share, rivals in ((0.9, True), (0.02, False)):  # model error is not in doubt for what explains little
+        little = replace(best, best=replace(best.best, share=share))
+        assert bool(rival_of_formula(little)) is rivals
     value, u = best.best.numbers[name]
     assert value == pytest.approx(belt.FX_INTO_MX, abs=4.0 * u)
     after = best_effect(Left.of(fit, left_by(fit)))
