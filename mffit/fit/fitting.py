@@ -47,6 +47,7 @@ from mffit.progress import DERIVING, PREDICTING, Progress, silent
 from mffit.rig import Simulation
 from mffit.rig_errors import BESIDE
 from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, after_the_fit
+from mffit.suspicion.mounts import undeclared_mount
 from mffit.suspicion.outliers import outliers
 from mffit.suspicion.reversals import turning_sentences
 from tir import Tyre
@@ -111,6 +112,8 @@ def fit(
         for exact in ((), zeros_of_rig(fitted.zeros))
     )
     wide = bands(known_forces, fitted.held, simulation, points, with_zeros)
+    turned = undeclared_mount.find(points, FittedModel(full.simulation, left_by_formula))
+    mounts = tuple(map(undeclared_mount.said, turned))
     modelled, others = nuisance_sentences(config.tyre.name, found, temperature, runs, channels)
     moved, contradicted = (
         ("", False) if turning is None else zeros_sentence(turning, fitted, from_base=base is not None)
@@ -137,6 +140,7 @@ def fit(
         warnings=(
             *([moved] if contradicted else []),
             *warnings(full, doubts, outlying, files.untested),
+            *mounts,
             *nominal_pressure_sentences(files),
             *turning_sentences(points, best, at_turns),
             *(confounding_sentence(row, modelled=found.at_temperature) for row in confounded),
@@ -144,6 +148,7 @@ def fit(
         seconds=time.perf_counter() - began,
         epsilon_gamma_model=_epsilon_gamma(made.known.values, points, measured),
         doubts=doubts,
+        mounts=mounts,
         outliers=outlying,
         at_turns=at_turns,
         search=fitted,

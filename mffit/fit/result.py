@@ -48,6 +48,7 @@ class FitResult(ReadOnlyArrays, Brief):
     seconds: float
     epsilon_gamma_model: float | None = None  #: of the fitted model; None on a flat track
     doubts: tuple[Doubt, ...] = ()  #: sweeps that contradict the others
+    mounts: tuple[str, ...] = ()  #: files that were perhaps measured with another mount, as a sentence
     left_by_formula: LinearisedFit | None = field(default=None, repr=False)
     """Linear model of the full fit's residuals."""
     left_by_file: LinearisedFit | None = field(default=None, repr=False)

@@ -172,7 +172,7 @@ def _of_all(
     return replace(
         trust,
         reasons=reasons,
-        doubts=(*reading.doubts, *explained, *trust.doubts),
+        doubts=(*reading.doubts, *explained, *fitted.mounts, *trust.doubts),
         remarks=trust.remarks if reasons else tuple(remarks),
     )
 

@@ -10,7 +10,7 @@ from mffit.config import Config
 from mffit.config.loading import as_declared
 from mffit.points import Points
 from mffit.points.faulty import FAULTS
-from mffit.suspicion import all_files, declarations, other_tyre, others, single_files, slopes, trust
+from mffit.suspicion import all_files, declarations, mounts, other_tyre, others, single_files, slopes, trust
 from mffit.suspicion.misread import misread_sweep
 from mffit.suspicion.outliers import OUTLYING
 from mffit.suspicion.reversals import TURNING
@@ -55,6 +55,7 @@ RULES: tuple[Rule, ...] = (
     all_files.angles_fit_exchanged,
     others.contradicting_sweep,
     others.doubtful_sweep,
+    mounts.undeclared_mount,
     OUTLYING,
     TURNING,
     *trust.OF_TRUST,

@@ -1,0 +1,34 @@
+"""Files measured with the tyre turned on its rim, undeclared: several hide each other from every comparison of single ones."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from mffit.pipeline import build
+
+SAMPLES = Path(__file__).parents[3] / "samples"
+TURNED = ("alpha_deg", "gamma_deg", "Fy_N", "Mz_Nm")
+PAIR = ("sideslip_1400N_10deg.csv", "sideslip_2100N_20deg.csv")
+
+
+@pytest.mark.parametrize("turned", [(), PAIR], ids=["as declared", "two turned"])
+def test_two_files_with_the_tyre_turned_on_its_rim_are_named(tmp_path, turned):
+    path = tmp_path / "belt" / "tyre.toml"
+    shutil.copytree(SAMPLES / "flat-track", path.parent)
+    for name in turned:
+        table = pd.read_csv(path.parent / name, comment="#")
+        table[list(TURNED)] *= -1.0
+        table.to_csv(path.parent / name, index=False)
+    found = build(path)
+    said = [one for one in found.trust.doubts if "turned on its rim" in one]
+    assert [one.startswith(" and ".join(turned)) for one in said] == [True] * bool(turned)
+    if turned:  # declared, they are as good as any
+        text = path.read_text(encoding="utf-8")
+        for name in turned:
+            text = text.replace(f'file = "{name}"', f'file = "{name}"\nmount = "flipped"')
+        path.write_text(text, encoding="utf-8")
+        assert not build(path).trust.doubts
