@@ -53,3 +53,13 @@ def test_a_zero_of_fx_does_not_make_up_for_a_difference_of_driving_and_braking(d
     found = driven.predict(alpha_deg=alpha, gamma_deg=0.0, Fz_N=Fz, kappa=0.0)
     off = found["Fx_best_N"] - forces(alpha, Fz, 0.0)["Fx_N"]
     assert np.mean(np.abs(off) < 1.96 * found["u_Fx_best_N"]) > 0.9
+
+
+@pytest.mark.parametrize("Fz", [300.0, 500.0])
+def test_below_the_lowest_load_a_prediction_says_how_little_is_known(driven, Fz):
+    """The lowest tested load is 1000 N, and without load the force is known again: between them it is known less."""
+    random = np.random.default_rng(1)
+    alpha, kappa = random.uniform(-5.0, 5.0, 300), random.uniform(-0.15, 0.15, 300)
+    found = driven.predict(alpha_deg=alpha, gamma_deg=0.0, Fz_N=Fz, kappa=kappa)
+    off = found["Fx_best_N"] - forces(alpha, Fz, kappa)["Fx_N"]
+    assert np.mean(np.abs(off) < 1.96 * found["u_Fx_best_N"]) > 0.9
