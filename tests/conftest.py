@@ -10,6 +10,8 @@ from typing import Any
 # Before numpy is loaded: the matrices are small, and threads of several test processes only wait for each other.
 for library in ("OPENBLAS", "OMP", "MKL"):
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+# Texts are as wide as where there is no terminal, whatever terminal the tests run in.
+os.environ.pop("COLUMNS", None)
 
 import pytest  # noqa: E402
 from hypothesis import settings  # noqa: E402
