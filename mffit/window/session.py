@@ -224,10 +224,12 @@ class Session:
             now = self.file.digest
             problem, config = self._read(now)
             self._look_for_recordings()
+            differs = [] if config is None else self._differing(config)
             last = self.last if self._ended_with == (now, self._there()) else None
             return {
                 "digest": now,
-                "is_fitted": self._fitted == now and config is not None and self._is_of(config),
+                "is_fitted": self._fitted == now and config is not None and not differs,
+                "differs": differs,
                 "fits": self.fits,
                 "has_readings": self.readings is not None,
                 "problem": problem,
@@ -319,10 +321,14 @@ class Session:
             self._news = news if news and news["unlisted"] else None  # the fit lacks those
             self._fitted = run.digest
 
-    def _is_of(self, config: Config) -> bool:
-        """Whether the last fit used the files that the configuration names, as they are now."""
-        now = {name: _of_file(digest, config.folder / name) or "" for name in input_names(config)}
-        return self.data is not None and now == self.data["inputs"]
+    def _differing(self, config: Config) -> list[str]:
+        """The files that the configuration names and that are not those of the last fit, or are gone."""
+        if self.data is None:
+            return []
+        used = self.data["inputs"]
+        now = {name: _of_file(digest, config.folder / name) for name in input_names(config)}
+        others = [name for name in {**used, **now} if now.get(name) != used.get(name)]
+        return [name if now.get(name) else f"{name} (gone)" for name in others]
 
     def _unlisted_news(self, config: Config | None) -> dict[str, Any] | None:
         """What new recordings say, ``unlisted`` those that tyre.toml still lacks."""

@@ -208,7 +208,7 @@ function showStatus() {
   if (live.last && live.last.sentence) return say(`${live.last.state}: ${live.last.sentence}`, true);
   if (live.last && live.last.state === "stopped") return say("Stopped; nothing was written.");
   say(live.is_fitted ? "The curves are those of mffit build for this tyre.toml."
-    : "tyre.toml or a file that it names differs from the fit that is shown: Refit.");
+    : `${live.differs.slice(0, 3).join(", ") || "tyre.toml"} differs from the fit that is shown: Refit.`);
 }
 function showLinks() {
   byId("add-recordings").hidden = hasEnded();

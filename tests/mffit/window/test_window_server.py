@@ -326,7 +326,9 @@ def test_curves_of_other_readings_are_not_those_of_a_build(session, change):
         recording.write_bytes(content.replace(b"0", b"1", 1))
         if change.endswith("time"):
             os.utime(recording, ns=(time, time))
-    assert not session.state()["is_fitted"]
+    state = session.state()
+    assert not state["is_fitted"]
+    assert state["differs"] == ["camber_900.csv (gone)" if change == "gone" else "camber_900.csv"]
     recording.write_bytes(content)
     assert session.state()["is_fitted"]
 
