@@ -20,18 +20,22 @@ def growths(fit: LinearisedFit, channel: LinearisedChannel) -> np.ndarray:
     load, of other conditions in the unit of the channel.
     """
     model, given = _with_priors(fit, channel)
-    inputs = channel.smooth.inputs
-    out = np.zeros((len(inputs), 2))
-    for i, one in enumerate(inputs):
-        for sides, rest, rows in _ends(one, channel.seen.settings[:, i]):
-            (found,) = model.left_out(given, [rows])
-            at = channel.seen.settings[rows, i]
-            # Not all of it is the tyre's: noise, and what each run has of its own.
-            own = np.exp(given.noise) + np.sum(model.own[rows] ** 2 * np.exp(given.own), axis=1)
-            strays = (found.error**2 - own) * (channel.unit[rows] / rest.size(at)) ** 2
-            far = np.sum(np.abs(rest.beyond(at)) ** 3)
-            out[i, sides] = np.sqrt(max(np.sum(strays), 0.0) / far) if far > 0.0 else 0.0
-    return out
+    settings, kept = channel.seen.settings, np.sort(np.concatenate(model.groups))
+    ends = [
+        (i, sides, rest, kept[out])
+        for i, one in enumerate(channel.smooth.inputs)
+        for sides, rest, out in _ends(one, settings[kept, i])
+    ]
+    growth = np.zeros((settings.shape[1], 2))
+    predicted = model.left_out(given, [rows for *_, rows in ends])
+    for (i, sides, rest, _), found in zip(ends, predicted, strict=True):
+        at = settings[found.rows, i]
+        # Not all of it is the tyre's: noise, and what each run has of its own.
+        own = np.exp(given.noise) + np.sum(model.own[found.rows] ** 2 * np.exp(given.own), axis=1)
+        strays = (found.error**2 - own) * (channel.unit[found.rows] / rest.size(at)) ** 2
+        far = np.sum(np.abs(rest.beyond(at)) ** 3)
+        growth[i, sides] = np.sqrt(max(np.sum(strays), 0.0) / far) if far > 0.0 else 0.0
+    return growth
 
 
 def _with_priors(fit: LinearisedFit, channel: LinearisedChannel) -> tuple[Mixed, Variances]:
@@ -44,10 +48,12 @@ def _with_priors(fit: LinearisedFit, channel: LinearisedChannel) -> tuple[Mixed,
     expected = np.where(has_prior, [number.expected for number in fit.numbers], 0.0)[free]
     size = np.where(has_prior, spread, constants.FREE_OVER_KNOWN * known)[free]
     slopes = slopes[:, free]
+    every = max(1, len(channel.rows) // (2 * (m + len(size))))  # two readings for each number are enough
     model = replace(
         channel.model,
         residual=channel.model.residual - slopes @ expected,
         common=np.hstack([channel.model.common[:, :m], slopes * size]),
+        groups=[rows[::every] for rows in channel.model.groups],
     )
     common = np.append(channel.variances.common[:m], np.zeros(len(size)))
     return model, channel.variances._replace(common=common)
