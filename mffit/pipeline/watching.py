@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from mffit import config as configuration
 from mffit.errors import InputError
-from mffit.pipeline.arriving import ArrivingFiles
+from mffit.pipeline.arriving import Arrived, ArrivingFiles
 from mffit.pipeline.inputs import read_usable
 from mffit.pipeline.intake import sweep_text
 from mffit.pipeline.measuring import alignment_of, spin_of
@@ -69,6 +69,7 @@ class _Watch:
         self.path, self.config = path, configuration.load(path, awaiting=True)
         self.arriving = ArrivingFiles()
         self._shown: object = None  #: the inputs of the last campaign
+        self._known: dict[Path, Arrived] = {}  #: its files as they last were complete
         self._last = NOTHING_YET
         self._states: dict[str, tuple[object, ...]] = {}  #: of its files, by their names
         self._said: set[str] = set()  #: its warnings, without their numbers
@@ -77,7 +78,6 @@ class _Watch:
     @formats.reading_once()
     def look(self) -> WatchedCampaign | None:
         """The campaign if something has changed since the look before; None otherwise."""
-        before = self.arriving.files
         try:
             config = configuration.load(self.path, awaiting=True)
         except InputError as error:
@@ -89,10 +89,13 @@ class _Watch:
         self.config = config
         self.arriving.look(config)
         files, waiting = self.arriving.files, self.arriving.waiting
-        rewritten = {path: before[path] for path in waiting if path in before}  # no news until complete
-        if (config, rewritten | files) == self._shown:
+        rewritten = {
+            path: one for path, one in self._known.items() if path in waiting
+        }  # no news until complete
+        self._known = rewritten | files
+        if (config, self._known) == self._shown:
             return None
-        self._shown, self._last = (config, files), self._campaign()
+        self._shown, self._last = (config, self._known), self._campaign()
         return self._last
 
     def _campaign(self) -> WatchedCampaign:

@@ -260,6 +260,17 @@ def test_a_replaced_file_is_read_again_as_soon_as_it_rests(rig):
     assert [(one.points, one.changed[0].state) for one in found] == [(13, "taken"), (10, "taken")]
 
 
+def test_a_file_that_is_rewritten_badly_is_news_once(rig):
+    path, contents = rig
+    name = "sideslip_1500.csv"
+    put(path.parent / name, contents[name])
+    found = played(path, [None, lambda: put(path.parent / name, b"garbage\n1,2\n"), *[None] * 8])
+    assert [[(arrival.file, arrival.state) for arrival in one.changed] for one in found] == [
+        [(name, "taken")],
+        [(name, "refused")],
+    ]
+
+
 def test_files_that_are_gone_leave(rig):
     path, contents = rig
     for name in ("sideslip_1500.csv", "camber_1500.csv"):
