@@ -44,7 +44,7 @@ def means(
     stretches: Sequence[Stretch],
     labels: Sequence[str],
     faulty: np.ndarray,
-    grids: Sequence["Grid"],
+    grids: Sequence["BlockGrid"],
 ) -> Means:
     """Points: means over plateaus, with estimated standard errors if the file states none, and over short blocks of sweeps.
 
@@ -102,7 +102,7 @@ def _errors(
     return np.where(np.isfinite(stated), stated, np.where(errors > 0.0, errors, np.nan))
 
 
-class Grid(NamedTuple):
+class BlockGrid(NamedTuple):
     """Times at which a sweep is divided into blocks to average."""
 
     start: float  #: of the first block [s]
@@ -111,7 +111,7 @@ class Grid(NamedTuple):
     shortest: float  #: time from the first to the last sample of a block [s]
 
 
-def grid_of(sweep: Sweep, rows: np.ndarray, radius: float) -> Grid:
+def grid_of(sweep: Sweep, rows: np.ndarray, radius: float) -> BlockGrid:
     """The blocks of a stretch, from its sound ``rows``; ``radius`` is that of the wheel [m].
 
     A wheel that is not round makes a ripple, which a mean over whole turns does not contain: such a block lacks one sample at
@@ -135,10 +135,10 @@ def grid_of(sweep: Sweep, rows: np.ndarray, radius: float) -> Grid:
     if constants.RANGE_OF_A_TURN * step > turn:  # False without a turn
         size = max(1, round(step / turn)) * turn / interval
         shortest = (size - 2.5) * interval
-    return Grid(time[0], interval, size, shortest)
+    return BlockGrid(time[0], interval, size, shortest)
 
 
-def _blocks(time: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+def _blocks(time: np.ndarray, grid: BlockGrid) -> tuple[np.ndarray, np.ndarray]:
     """First sample of every block by number, and the mask of the blocks that give a point: half of their samples are sound."""
     block = np.floor((time - grid.start) / (grid.size * grid.interval) + 1e-6)
     first = np.r_[0, np.flatnonzero(np.diff(block)) + 1]

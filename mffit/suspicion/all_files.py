@@ -130,7 +130,7 @@ def angles_exchanged(points: Points, config: Config) -> Iterator[Facts]:
     "{after:.3g} {unit}; exchange them under [columns], or their headings",
 )
 def angles_fit_exchanged(before: Mapping[str, float], after: Mapping[str, float]) -> Iterator[Facts]:
-    """Misfit as read, where angles-exchanged asks, over that of a fit with the angles exchanged."""
+    """Misfit over that with both exchanged, where angles-exchanged asks."""
     if all(after[name] <= EXPLAINED_SHARE * before[name] for name in before):
         name = min(before, key=lambda name: after[name] / before[name])
         yield {

@@ -27,7 +27,11 @@ if TYPE_CHECKING:
     'deviations): was it? Then write mount = "flipped" (or "normal") in the [[sweep]] of each',
 )
 def undeclared_mount(points: Points, fitted: FittedModel) -> Iterator[Facts]:
-    """Evidence for another mount of one file or several, with the asymmetries of the tyre refitted; the model error aside."""
+    """Evidence for another mount of one file or several.
+
+    The asymmetries of the tyre are refitted, because the files with another mount have distorted them. The model error is left
+    aside, because a mount would hide in it.
+    """
     from mffit.linearised.components import LIKELY_EVIDENCE  # after a fit only
 
     count = len(points.files)
