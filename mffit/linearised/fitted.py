@@ -227,13 +227,6 @@ class Uncertain(NamedTuple):
     held: bool = False  #: whether the fit took it as exact
 
 
-class Told(NamedTuple):
-    """What residuals tell of numbers (j,)."""
-
-    information: np.ndarray  #: (j, j)
-    pull: np.ndarray  #: (j,) score at the prior means
-
-
 @dataclass(frozen=True, eq=False)
 class LinearisedFit:
     """The linear models of all channels of a fit at its solution."""
@@ -258,9 +251,9 @@ class LinearisedFit:
         because they shift the curves as the coefficients do.
         """
         free = [i for i in self._with_prior if not self.numbers[i].held]
-        told = self._told(free)
-        covariance = inverse(told.information + np.diag([self.numbers[i].spread ** -2.0 for i in free]))
-        change = np.array([self.numbers[i].expected for i in free]) + covariance @ told.pull
+        information, pull = self._told(free)
+        covariance = inverse(information + np.diag([self.numbers[i].spread ** -2.0 for i in free]))
+        change = np.array([self.numbers[i].expected for i in free]) + covariance @ pull
         u = np.sqrt(np.diag(covariance))
         return {
             self.numbers[i].name: (float(x), float(own))
@@ -271,8 +264,8 @@ class LinearisedFit:
     def evidence_of(self, names: Collection[str]) -> float:
         """Gain of log evidence by the named numbers within their priors, beside the model error and all others with a prior."""
         known = self._with_prior
-        spread, told = np.array([self.numbers[i].spread for i in known]), self._told(known)
-        pull, information = spread * told.pull, told.information * np.outer(spread, spread)
+        spread, (information, pull) = np.array([self.numbers[i].spread for i in known]), self._told(known)
+        pull, information = spread * pull, information * np.outer(spread, spread)
         others = [k for k, i in enumerate(known) if self.numbers[i].name not in names]
         without = Informed.by(information[np.ix_(others, others)], pull[others])
         return Informed.by(information, pull).gain - without.gain
@@ -282,15 +275,18 @@ class LinearisedFit:
         """Indices of the numbers with a prior."""
         return [i for i, number in enumerate(self.numbers) if np.isfinite(number.spread)]
 
-    def _told(self, which: Sequence[int]) -> Told:
-        """What the residuals of all channels tell of some numbers (j,) beside the model error, from their prior means."""
+    def _told(self, which: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
+        """What the residuals of all channels tell of some numbers (j,) beside the model error.
+
+        Returns information (j, j), and score (j,) at the prior means.
+        """
         expected = np.array([self.numbers[i].expected for i in which])
         information, pull = np.zeros((len(which), len(which))), np.zeros(len(which))
         for channel in self.channels.values():
             turned = channel.model.common[:, len(channel.missed) :]
             found = channel.told_beside(channel.model, turned @ np.linalg.inv(channel.turn)[:, which])
             information, pull = information + found.information, pull + found.pull
-        return Told(information, pull - information @ expected)
+        return information, pull - information @ expected
 
 
 def linearised(
