@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.as_json import keys
 from mffit.config import Config
-from mffit.constants import FEWEST_SWEEPS_TO_PREDICT
+from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, MOST
 from mffit.errors import InputError
 from mffit.fit.fitted import Fitted
 from mffit.fit.influences.joint import JointFit, LeftOutGroups, beyond_chance
@@ -18,7 +18,8 @@ from mffit.fit.influences.nuisances import NUISANCES, Nuisance
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber, solve
 from mffit.left_out import clearly_above_zero
-from mffit.points import Points
+from mffit.linearised.inputs import LEVELS, word_of
+from mffit.points import Points, levels
 from mffit.rig_errors import T_REF
 from mffit.suspicion import parts_of_sweeps
 
@@ -209,7 +210,8 @@ def _of_runs(
     """The verdict on random effects of the runs, and their standard deviations if they are modelled.
 
     The random effects of a wholly left-out run are unknown, so halves of runs are left out and the other half determines them.
-    In addition whole runs must not be predicted worse, which would show that model error was mistaken for differences of runs.
+    In addition whole runs must not be predicted worse, and no condition that runs hold may explain most of the gain: either shows
+    that model error was mistaken for differences of runs.
     """
     points = model.problem.points
     sweeps = np.unique(points.sweep, return_inverse=True)[1]
@@ -223,8 +225,15 @@ def _of_runs(
     )
     if demanded:
         return Verdict(nuisance, True, _said(config, nuisance), *gaps), scatter
-    if not beyond_chance(differ.value - joint.model.evidence(alike).value, len(scatter)):
+    gain = differ.value - joint.model.evidence(alike).value
+    if not beyond_chance(gain, len(scatter)):
         return Verdict(nuisance, False, _WITHIN_CHANCE, *gaps), {}
+    for name in ("Fz", "gamma", "p"):
+        held = levels.labels_of_setting(getattr(points, name), points.sweep, LEVELS[name])
+        by_level = model.joint(np.unique(held, return_inverse=True)[1]).explained().value
+        if by_level > differ.value - (1.0 - MOST) * gain:
+            reason = f"it follows the {word_of(name)}, over which the formula misses the tyre"
+            return Verdict(nuisance, False, reason, *gaps), {}
     # The gain must be significant over the runs: scatter shows in most runs, not in a few.
     of_run = np.unique(halves[joint.looked_at]) // 2
     if not clearly_above_zero(np.bincount(of_run, without.squares - beside.squares)):

@@ -2,6 +2,7 @@
 
 import re
 import shutil
+import sys
 import textwrap
 from collections.abc import Iterable, Sequence
 
@@ -22,7 +23,7 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, left: int = 1) 
     widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
     parts, used = [list(range(left))], sum(widths[:left]) + 2 * (left - 1)
     for i in range(left, len(head)):
-        if used + 2 + widths[i] > terminal_width() and parts[-1][left:]:
+        if used + 2 + widths[i] > _room() and parts[-1][left:]:
             parts.append([0])
             used = widths[0]
         parts[-1].append(i)
@@ -40,9 +41,9 @@ def _columns_of(cells: Sequence[Sequence[str]], widths: Sequence[int], part: Seq
     return "\n".join(line.rstrip() for line in lines)
 
 
-def terminal_width() -> int:
-    """Characters per line: those of the terminal, :data:`TERMINAL_WIDTH` at most and where there is none."""
-    return min(int(TERMINAL_WIDTH), shutil.get_terminal_size((int(TERMINAL_WIDTH), 1)).columns)
+def _room() -> int:
+    """Characters that a line has: those of the terminal, any number where the text goes to a file or a program."""
+    return shutil.get_terminal_size((sys.maxsize, 1)).columns
 
 
 def columns(text: str, left: int = 1) -> str:
@@ -61,7 +62,7 @@ def blocks(parts: Iterable[str]) -> str:
 
 def _within(line: str) -> str:
     """A line, continued below its text if it is too long; the text is behind a label or an indent."""
-    return wrapped(line, others=" " * LABEL.match(line).end()) if len(line) > terminal_width() else line  # type: ignore[union-attr]
+    return wrapped(line, others=" " * LABEL.match(line).end()) if len(line) > _room() else line  # type: ignore[union-attr]
 
 
 def lines_left(*parts: str) -> int:
@@ -90,8 +91,10 @@ def paragraphs(sentences: Sequence[str]) -> str:
 
 
 def wrapped(sentence: str, first: str = "", others: str = "") -> str:
-    """A sentence in lines of the terminal's width; ``first`` and ``others`` are indents."""
-    return textwrap.fill(sentence, terminal_width(), initial_indent=first, subsequent_indent=others)
+    """A sentence in lines of :data:`TERMINAL_WIDTH` or the terminal's; ``first`` and ``others`` are indents."""
+    return textwrap.fill(
+        sentence, min(int(TERMINAL_WIDTH), _room()), initial_indent=first, subsequent_indent=others
+    )
 
 
 def steps(commands: Sequence[tuple[str, str]]) -> str:
