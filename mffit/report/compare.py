@@ -66,7 +66,7 @@ def differences(found: Comparison) -> Sheet:
     apart = [gap for gap in found.curves if gap.rms]
     if not apart:
         return Sheet(rows=[[panel]], height=height)
-    widest = max(apart, key=lambda gap: gap.rms / np.max(np.abs(gap.first)))
+    widest = max(apart, key=lambda gap: gap.rms / np.max(np.abs([gap.first, gap.second])))
     return Sheet(
         rows=[[panel, _panel(found, widest)]],
         height=height,

@@ -61,7 +61,7 @@ def test_the_result_says_so_everywhere(rough):
     assert "camber_1400" in reasons[0]
     assert any("misses Fy of camber_1400 by" in reason for reason in reasons)
     page = (rough.out / "report.html").read_text(encoding="utf-8")
-    assert page.index("Not to be trusted") < page.index("Which file goes where")
+    assert page.index("NOT TO BE TRUSTED") < page.index("Which file goes where")
     tyre = tir.read(rough.out / rough.result["tir"])
     assert "misses Fy of camber_1400" in tyre.provenance["NOT TO BE TRUSTED"]
 
