@@ -76,9 +76,9 @@ class MissedChannel(ReadOnlyArrays):
         functions = self._functions(settings)[1] * left.share[:, None]
         rows = self._rows(functions, slopes * of_tyre, slopes)
         mean, reading = (np.sum(one**2, axis=1) for one in rows)
-        unlike = 2.0 * left.slip * (left.load * self.components.missed) ** 2 + self._strays(
-            settings, left.load
-        )
+        # Between the lowest tested load and none, where it is zero again, the model error is free as a bridge is.
+        share = 2.0 * left.slip * left.load**2 + left.load * (1.0 - left.load)
+        unlike = share * self.components.missed**2 + self._strays(settings, left.load)
         return functions @ self.missed, mean + unlike, reading + unlike
 
     def mean(self, settings: np.ndarray) -> np.ndarray:
