@@ -78,12 +78,11 @@ class _Watch:
     @formats.reading_once()
     def look(self) -> WatchedCampaign | None:
         """The campaign if something has changed since the look before; None otherwise."""
+        config, wrong = self.config, ""
         try:
             config = configuration.load(self.path, awaiting=True)
         except InputError as error:
-            known, self._shown = self._shown, str(error)
-            wrong = replace(self._last, changed=(), warnings=(), problem=str(error))
-            return wrong if known != self._shown else None
+            wrong = str(error)
         if config.model_copy(update={"sweep": self.config.sweep}) != self.config:
             self.arriving.forget()  # columns or axes may be others
         self.config = config
@@ -93,9 +92,10 @@ class _Watch:
             path: one for path, one in self._known.items() if path in waiting
         }  # no news until complete
         self._known = rewritten | files
-        if (config, self._known) == self._shown:
+        if (config, self._known, wrong) == self._shown:
             return None
-        self._shown, self._last = (config, self._known), self._campaign()
+        self._shown, found = (config, self._known, wrong), self._campaign()
+        self._last = replace(found, problem=wrong) if wrong else found
         return self._last
 
     def _campaign(self) -> WatchedCampaign:

@@ -302,6 +302,25 @@ def test_tyre_toml_is_read_again_and_its_last_state_kept_while_it_is_wrong(rig):
     assert last.epsilon_gamma.u > first.epsilon_gamma.u
 
 
+def test_recordings_are_taken_with_the_last_correct_tyre_toml_while_it_is_wrong(rig):
+    path, contents = rig
+    names = ["sideslip_1500.csv", "camber_1500.csv", "forward_1500.csv"]
+    put(path.parent / names[0], contents[names[0]])
+    text = path.read_text()
+    steps = [None, lambda: put(path, text + "\n[rigg]\n"), None]
+    for name in names[1:]:
+        steps += [lambda n=name: put(path.parent / n, contents[n]), None]
+    found = played(path, steps)
+    assert [one.points for one in found] == [13, 13, 26, 30]
+    assert all("rigg" in one.problem for one in found[1:])
+    assert [[(one.file, one.state) for one in campaign.changed] for campaign in found[2:]] == [
+        [(name, "taken")] for name in names[1:]
+    ]
+    put(path, text)
+    (right,) = mffit.watch(path, once=True, pause=lambda seconds: None)
+    assert found[-1].epsilon_gamma == right.epsilon_gamma
+
+
 def test_a_pattern_finds_files_as_they_come(rig):
     path, contents = rig
     head = path.read_text().partition("[[sweep]]")[0]
