@@ -151,10 +151,13 @@ EDITS: Mapping[str, Callable[..., str]] = {
 
 
 def _edited(text: str, change: Callable[[Any], object]) -> str:
-    """The text after a change to its document; line ends stay those of the file."""
+    """The text after a change to its document, without tables that it has emptied; line ends stay those of the file."""
     text = _whole(text)
     document = tomlkit.parse(text)
     change(document)
+    for name in [name for name, table in document.items() if isinstance(table, Table)]:
+        if not document[name].as_string().strip() and not document[name].trivia.comment:
+            del document[name]
     found = tomlkit.dumps(document)
     return LONE_NEWLINE.sub("\r\n", found) if "\r\n" in text and not LONE_NEWLINE.search(text) else found
 
@@ -167,7 +170,8 @@ def _whole(text: str) -> str:
 def _table(document: Any, name: str) -> Any:
     """The table of a document, added at its end if it has none."""
     if name not in document:
-        document.add(tomlkit.nl())
+        if not document.as_string().endswith(("\n\n", "\n\r\n")):
+            document.add(tomlkit.nl())
         document.add(name, tomlkit.table())
     return document[name]
 

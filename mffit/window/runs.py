@@ -80,10 +80,10 @@ def carry_out(kind: str, path: Path, progress: Progress) -> dict[str, Any] | Non
 
 
 class Run:
-    """A run in its process; ``outcome`` is None until it ends."""
+    """A run in its process, of what tyre.toml has ``stated``; ``outcome`` is None until it ends."""
 
-    def __init__(self, kind: str, path: Path, digest: str) -> None:
-        self.kind, self.digest = kind, digest
+    def __init__(self, kind: str, path: Path, stated: Any = None) -> None:
+        self.kind, self.stated = kind, stated
         self._begun_at = time.monotonic()
         self._step = ShownStep("starting", self._begun_at)
         self.outcome: RunOutcome | None = None

@@ -209,7 +209,7 @@ class Session:
             {},
         )  #: tyre.toml and recordings when it had ended
         self._seen: tuple[str | None, str, Config | None] = (None, "", None)
-        self._fitted = ""  #: digest of the tyre.toml of the last fit
+        self._fitted: dict[str, Any] | None = None  #: what the tyre.toml of the last fit states
         self._run: Run | None = None
         self._first: Run | None = None  #: by which the readings are shown before the first fit
         self._news: dict[str, Any] | None = None  #: what new recordings say, for the page
@@ -228,7 +228,7 @@ class Session:
             last = self.last if self._ended_with == (now, self._there()) else None
             return {
                 "digest": now,
-                "is_fitted": self._fitted == now and config is not None and not differs,
+                "is_fitted": config is not None and self._fitted == stated(config) and not differs,
                 "differs": differs,
                 "fits": self.fits,
                 "has_readings": self.readings is not None,
@@ -278,8 +278,8 @@ class Session:
                 raise InputError("another run is under way; stop it first")
             self.last = None
             if self.data is None and self.readings is None:
-                self._first = Run("points", self.file.path, "")
-            self._run = Run(kind, self.file.path, self.file.digest)
+                self._first = Run("points", self.file.path)
+            self._run = Run(kind, self.file.path, stated(self._read(self.file.digest)[1]))
 
     def stop(self) -> None:
         """End the run that is under way."""
@@ -303,7 +303,7 @@ class Session:
         if reading is not None and reading.outcome is not None:
             self._news, self._reading = reading.outcome.data, None
         elif reading is None and there != self._recordings:
-            self._recordings, self._reading = there, Run("watch", self.file.path, "")
+            self._recordings, self._reading = there, Run("watch", self.file.path)
 
     def _collect(self) -> None:
         """Take the outcome of a run that has ended."""
@@ -319,7 +319,7 @@ class Session:
             self.fits += 1
             news = self._unlisted_news(self._seen[2])
             self._news = news if news and news["unlisted"] else None  # the fit lacks those
-            self._fitted = run.digest
+            self._fitted = run.stated
 
     def _differing(self, config: Config) -> list[str]:
         """The files that the configuration names and that are not those of the last fit, or are gone."""
@@ -361,6 +361,12 @@ class Session:
             for kind, (title, place) in PAGES.items()
             if kind != "compare" or (has_base and (out / "result.json").is_file())
         ]
+
+
+def stated(config: Config | None) -> dict[str, Any] | None:
+    """What a tyre.toml states: neither its comments, nor tables without a key."""
+    given = {} if config is None else config.model_dump(exclude_unset=True)
+    return None if config is None else {key: value for key, value in given.items() if value}
 
 
 def _before(data: dict[str, Any] | None) -> dict[str, Any] | None:

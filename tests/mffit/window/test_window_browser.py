@@ -29,7 +29,7 @@ from mffit.report.verdict import judgement, verdict
 from mffit.viewer import project_data, project_html, project_page
 from mffit.viewer.project_points import differing
 from mffit.window.runs import carry_out
-from mffit.window.session import Session
+from mffit.window.session import Session, stated
 from tests.browser import PAPER, PHONE, SCREEN, brightness, complaints, console_errors, look, opened, sheets
 
 SHOWN = "!!(window.mffit && mffit.data() && mffit.data().points.line)"
@@ -532,7 +532,7 @@ def fitted(tyre_toml: Path, result: Any) -> Any:
 
     session = Session(tyre_toml)
     session.data, session.fits = mffit.viewer.project_data(result) | {"before": None}, 1
-    session._fitted = session.file.digest
+    session._fitted = stated(session.file.config())
     return Opened(session)
 
 

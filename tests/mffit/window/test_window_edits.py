@@ -121,8 +121,21 @@ def test_readings_are_taken_back():
         tomllib.loads(take_back(TEXT, readings=[reading("a.csv", 41)]))["fit"]["exclude"][0]["lines"]
         == "39-40, 42-44"
     )
-    assert "exclude" not in tomllib.loads(take_back(TEXT, readings=[reading("a.csv", 30, 50)]))["fit"]
+    assert "fit" not in tomllib.loads(take_back(TEXT, readings=[reading("a.csv", 30, 50)]))
     assert take_back(TEXT, readings=[reading("b.csv", 41)]) == TEXT
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_what_is_taken_back_leaves_the_file_as_it_was(end):
+    text = TEXT.partition("[coefficients]")[0].replace("\n", end)
+    out = leave_out(text, readings=[reading("b.csv", 9)], why="y")
+    assert take_back(out, readings=[reading("b.csv", 9)]) == text
+    held = coefficient(out, name="PKY1", entry=-15.0)
+    freed = coefficient(held, name="PKY1", entry=None)
+    assert freed == out + end  # a blank line at most, however often
+    assert coefficient(coefficient(freed, name="PKY1", entry=-15.0), name="PKY1", entry=None) == freed
+    described = out.replace("[fit]", "[fit]  # by Anna")
+    assert "[fit]  # by Anna" in take_back(described, readings=[reading("b.csv", 9)])
 
 
 def test_an_array_of_tables_is_extended():

@@ -24,14 +24,18 @@ from mffit.errors import InputError
 from mffit.viewer import project_data
 from mffit.window.app import Opened, within
 from mffit.window.runs import RunOutcome, _work, carry_out, out_of
-from mffit.window.session import Session
+from mffit.window.session import Session, stated
 
 
 @pytest.fixture
 def session(tyre_toml: Path, result: Any) -> Session:
     """An open project whose first fit has finished."""
     found = Session(tyre_toml)
-    found.data, found.fits, found._fitted = project_data(result) | {"before": None}, 1, found.file.digest
+    found.data, found.fits, found._fitted = (
+        project_data(result) | {"before": None},
+        1,
+        stated(found.file.config()),
+    )
     return found
 
 
@@ -312,6 +316,14 @@ def test_a_project_that_a_build_refuses_already_can_be_changed(client, session):
     assert "nothere" in named
     assert edit(client, session, "coefficient", name="PCY1", entry=1.35).status_code == 200
     assert edit(client, session, "setting", table="tyre", key="base", value="").status_code == 200
+
+
+def test_a_comment_or_an_empty_table_is_no_difference_from_the_fit(session):
+    text = session.file.path.read_text(encoding="utf-8")
+    session.file.path.write_text(f"# seen by Anna\n{text}\n[model]\n", encoding="utf-8")
+    assert session.state()["is_fitted"]
+    session.file.path.write_text(f"{text}\n[coefficients]\nPCY1 = 1.3\n", encoding="utf-8")
+    assert not session.state()["is_fitted"]
 
 
 @pytest.mark.parametrize("change", ["replaced", "replaced by one of its time", "gone"])
