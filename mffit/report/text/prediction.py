@@ -31,7 +31,7 @@ def prediction_summary(found: pd.DataFrame, out: Path) -> str:
     turning = path[path != 0.0]
     if len(turning):
         lines.append(
-            f"{len(turning)} of {counted(len(found), 'condition')} are on a curved path, as on the disc ({PATH}, first "
+            f"on a curved path, as on the disc: {len(turning)} of {counted(len(found), 'condition')} ({PATH}, first "
             f"{turning[0]:.3g}); the straight road has {PATH} = 0"
         )
     return "\n".join([*lines, f"written to {out}"])

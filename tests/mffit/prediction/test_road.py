@@ -123,7 +123,7 @@ def test_without_a_path_the_prediction_is_on_that_of_the_readings(built):
     assert found["Fy_best_N"][0] == pytest.approx(found["Fy_best_N"][1])
     unstated = built.predict(**at)
     assert unstated["phi_t_per_m"].to_numpy() == pytest.approx(-1.0 / DISC)
-    assert "2 of 2 conditions are on a curved path, as on the disc" in prediction_summary(unstated, Path("a"))
+    assert "on a curved path, as on the disc: 2 of 2 conditions" in prediction_summary(unstated, Path("a"))
     straight = built.predict(**at, phi_t_per_m=0.0)
     assert "curved" not in prediction_summary(straight, Path("a"))
 
