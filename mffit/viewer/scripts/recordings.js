@@ -36,7 +36,9 @@ const number = name => {
 };
 const text = name => document.querySelector(`[name=${name}]`).value;
 const touched = new Set();  // fields of tyre and rig that were filled in by hand
-const chosen = name => touched.has(name) ? text(name) : "";  // what the page proposes is nobody's choice
+const proposed = {};  // what the page wrote into the others, which is nobody's choice
+const byHand = input => touched.has(input.name) || input.value !== (proposed[input.name] ?? "");
+const chosen = name => byHand(document.querySelector(`[name=${name}]`)) ? text(name) : "";
 const does = byId("choice").dataset.does, adds = does === "add";
 function choice() {
   return adds ? {groups: table.groups, seen: table.seen} : {
@@ -121,7 +123,10 @@ function propose() {
       axes.includes(option.value) ? `${option.value} (agrees with the signs)` : option.value || "which axes?";
   const said = {...tyre, type: known && !disc.length ? "flat-track" : "", axes: axes[0]};
   for (const input of document.querySelectorAll("#tyre [name], #rig [name]"))
-    if (!touched.has(input.name) && input.name !== "side") input.value = said[input.name] ?? "";
+    if (!byHand(input) && input.name !== "side") {
+      input.value = said[input.name] ?? "";
+      proposed[input.name] = input.value;
+    }
   document.querySelector("[name=type]").dispatchEvent(new Event("change"));
 }
 function tyreAndRig(tyre, rig) {
