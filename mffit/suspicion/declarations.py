@@ -14,6 +14,7 @@ from mffit.config import Config
 from mffit.constants import NAMED_IN_SENTENCE
 from mffit.points import Points
 from mffit.suspicion import constants
+from mffit.suspicion.rereadings import turned
 from mffit.suspicion.rule import Facts, Outcome, rule
 from mffit.suspicion.slopes import Signatures, contradictions, signatures
 from tir.constants import NEGLIGIBLE_SHARE
@@ -139,9 +140,7 @@ def _alternatives(points: Points, config: Config) -> list[Alternative]:
     return [
         *others,
         Alternative(
-            'the other sign of Mz: Mz_Nm = { column = "Mz_Nm", scale = -1 } under [sweep.columns]',
-            "sweep",
-            lambda: points.replace(Mz=-points.Mz),
+            f"the other sign of Mz: {turned('Mz_Nm')}", "sweep", lambda: points.replace(Mz=-points.Mz)
         ),
         Alternative(
             "backward runs reported in the rig's axes: their alpha_deg has the other sign, or direction is wrong",

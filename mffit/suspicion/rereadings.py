@@ -80,8 +80,13 @@ def _reversed(looks: str, column: str, remedy: str, *fields: str, beyond_doubt: 
     return Mistake(looks=looks, column=column, remedy=remedy, undone=undone, beyond_doubt=beyond_doubt)
 
 
+def turned(column: str) -> str:
+    """How the sign of a column is turned in ``tyre.toml``, whatever its heading."""
+    return f"map {column} with scale = -1 under [sweep.columns]"
+
+
 def _of_sign(field: str, column: str, what: str) -> Mistake:
-    remedy = f"correct its sign, or map {column} with scale = -1 under [sweep.columns]"
+    remedy = f"correct its sign, or {turned(column)}"
     return _reversed(f"{what} reversed", column, remedy, field)
 
 

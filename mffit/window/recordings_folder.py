@@ -31,6 +31,7 @@ from mffit.recordings.sniffed import Sniffed, axes_of, sniff
 from mffit.recordings.summary import SummaryRow, apart, bad_runs, two_specimens
 from mffit.recordings.unstated import Guess
 from mffit.suspicion import before_the_fit
+from mffit.suspicion.rereadings import turned
 from mffit.sweeps import formats
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS
 from mffit.sweeps.columns import numbers
@@ -160,6 +161,16 @@ class RecordingsFolder:
         InputError
             They cannot be read so.
         """
+        try:
+            return self._checked(choice)
+        except InputError as error:
+            said = _on_the_page(error.sentence, choice)
+            raise InputError(
+                said, file=error.file, line=error.line, column=error.column, key=error.key
+            ) from None
+
+    def _checked(self, choice: Mapping[str, Any]) -> dict[str, Any]:
+        """As :meth:`check`; refusals say what to write in ``tyre.toml``."""
         chosen = self._chosen_config(choice)
         reading = read(chosen, may_be_empty=True)
         warnings = [*reading.notes, *reading.warnings]
@@ -175,7 +186,7 @@ class RecordingsFolder:
             "conditions": conditions,
             "axes": list(axes),
             "wrong": list(wrong),
-            "warnings": warnings,
+            "warnings": [_on_the_page(sentence, choice) for sentence in warnings],
         }
 
     def _chosen_config(self, choice: Mapping[str, Any]) -> Config:
@@ -252,6 +263,15 @@ class RecordingsFolder:
         checked(content, path=None, folder=self.folder, lines={})
         disc = DiscPath(float(of_rig["path_radius"]), str(of_rig["path_centre"])) if on_disc else None
         return Stated(**given, axes=of_rig.get("axes"), disc=disc, belt=belt)
+
+
+def _on_the_page(sentence: str, choice: Mapping[str, Any]) -> str:
+    """A sentence that names the box of the page by which a sign is turned, in place of what to write in ``tyre.toml``."""
+    with _complete():
+        for row in (row for group in choice["groups"] for row in group["columns"]):
+            box = f'change "turn sign" of {row["heading"]}'
+            sentence = sentence.replace(turned(_choice(row).channel), box)
+    return sentence
 
 
 def _conditions(points: Points) -> list[dict[str, Any]]:

@@ -408,6 +408,26 @@ def test_a_foreign_table_leaves_rig_and_axes_open_until_its_tick_is_taken_away(t
     assert any("backward" in sign for sign in seen["disc"])
 
 
+def test_a_turned_moment_is_cured_by_the_box_of_its_own_heading(tmp_path):
+    found = of_disc_beside_a_foreign_table(tmp_path)
+    (tmp_path / "costs.csv").unlink()
+    for path in tmp_path.iterdir():
+        table = pd.read_csv(path, comment="#")
+        table["MZ"] = -table.pop("Mz_Nm")
+        table.to_csv(path, index=False)
+    rig = {"type": "rotating-disk", "axes": "iso", "path_radius": 1.323, "path_centre": "left"}
+    choice = {"tyre": TYRE, "rig": rig, "groups": found.table()["groups"]}
+    rows = [row for group in choice["groups"] for row in group["columns"] if row["heading"] == "MZ"]
+    for row in rows:
+        row |= {"channel": "Mz_Nm", "unit": "N m", "minus": False}
+    with pytest.raises(InputError, match='change "turn sign" of MZ') as refused:
+        found.check(choice)
+    assert "[sweep.columns]" not in str(refused.value)
+    for row in rows:
+        row["minus"] = True
+    assert found.check(choice)["axes"] == ["iso"]
+
+
 def test_nobody_s_choice_makes_no_belt_of_a_disc_and_is_not_called_a_choice(tmp_path, original):
     found = of_disc_beside_a_foreign_table(tmp_path)
     (tmp_path / "costs.csv").unlink()
