@@ -19,12 +19,12 @@ from mffit.config import Config
 from mffit.constants import CAMBER_OF_SLOPES, STRAIGHT, UPRIGHT, USUAL_U_FORCE
 from mffit.least_squares import FreeNumber, of_model, solve
 from mffit.measured import constants, wording
-from mffit.measured.axis import usual_stiffness
+from mffit.measured.axis import slope_at, usual_stiffness
 from mffit.measured.evidence import DirectEvidence, rest_of_play
 from mffit.measured.uncertain import named, polynomial
-from mffit.measured.zeros import LoadGroup, u_of
+from mffit.measured.zeros import LoadGroup, force_at_zero, u_of
 from mffit.parts.constants import SAME_CAMBER
-from mffit.points import Points, main_path
+from mffit.points import Points, levels, main_path
 
 
 class SlopeAtZero(NamedTuple):
@@ -51,13 +51,13 @@ class OddCurve(NamedTuple):
     u: np.ndarray  #: (n,) its standard uncertainty
 
     def slope(self, *, local: float, curvature: float = 0.0) -> SlopeAtZero | None:
-        """Slope at zero; None if there are fewer than three angles.
+        """Slope at zero; None if there are fewer than three set-points.
 
         A cubic describes the curve up to the angle ``local`` [rad]. ``curvature`` is the prior standard deviation of the shape's
         curvature E; 0 holds it at 0.
         """
         x, y, u = self
-        if len(np.unique(np.round(x, 4))) < 3:
+        if _set_points(x) < 3:
             return None
         shape, u_noise, scatter = self._saturating(curvature)
         if not curvature:
@@ -65,7 +65,7 @@ class OddCurve(NamedTuple):
             scatter = min(scatter, self._saturating(float(constants.CURVATURE_SPREAD))[2])
         near = x <= local * 1.01
         difference = constants.SLOPE_WITHOUT_CUBIC * abs(shape)
-        if len(np.unique(np.round(x[near], 4))) >= 3:
+        if _set_points(x[near]) >= 3:
             cubic, u_cubic = polynomial(x[near], y[near], u[near], (1, 3))
             difference = math.sqrt(max((shape - cubic[0]) ** 2 - u_cubic[0] ** 2, 0.0))
         u_noise *= max(1.0, scatter)
@@ -88,6 +88,11 @@ class OddCurve(NamedTuple):
 
     def _saturating(self, curvature: float) -> tuple[float, float, float]:
         return _saturating(*(np.asarray(one, dtype=float).tobytes() for one in self), curvature)
+
+
+def _set_points(angle: np.ndarray) -> int:
+    """Number of set-points among angles (n,) [rad]: a held angle that wanders is one."""
+    return len(np.unique(levels.nearest_labels(angle, levels.LevelKind("set-point", SAME_CAMBER.rad))))
 
 
 @lru_cache(maxsize=256)
@@ -196,8 +201,7 @@ def load_slopes(evidence: DirectEvidence, group: LoadGroup) -> tuple[LoadSlopes,
 def cornering_stiffness(evidence: DirectEvidence, group: LoadGroup) -> UFloat | None:
     """Slope of the side force over sideslip at zero [N/rad]; the secant if there are too few angles; None without either."""
     config, local = evidence.config, constants.CUBIC_SIDESLIP.rad
-    i = sweep(evidence.points, evidence.odd_Fy, group, "alpha", config)
-    curve = _curve(evidence, i, evidence.odd_slip, evidence.odd_Fy)
+    curve = _curve(evidence, group, "alpha")
     slope = curve.slope(local=local, curvature=float(constants.CURVATURE_SPREAD))
     C_alpha = _number(slope or curve.secant(local), "cornering stiffness")
     if C_alpha is None or not config.rig.backlash_deg:
@@ -245,20 +249,33 @@ def camber_estimates(
     evidence: DirectEvidence, group: LoadGroup, C_alpha: UFloat | None, direction: int
 ) -> Estimates:
     """Slope and secant of the camber sweep in one direction, less the force of the sideslip that backlash causes in it."""
-    config = evidence.config
-    i = sweep(evidence.points, evidence.odd_Fy, group, "gamma", config, direction)
-    slope = 0.0 if C_alpha is None else C_alpha.nominal_value
-    odd_Fy = evidence.odd_Fy - direction * slope * evidence.odd_slip
-    curve = _curve(evidence, i, evidence.points.gamma, odd_Fy)
-    secant = curve.secant(math.radians(config.camber_stiffness.angle_deg))
+    slope = 0.0 if C_alpha is None else float(C_alpha.nominal_value)
+    curve = _curve(evidence, group, "gamma", direction, direction * slope)
+    secant = curve.secant(math.radians(evidence.config.camber_stiffness.angle_deg))
     return Estimates(curve.slope(local=CAMBER_OF_SLOPES.rad), secant, float(curve.x.max(initial=0.0)))
 
 
-def _curve(evidence: DirectEvidence, index: np.ndarray, angle: np.ndarray, odd: np.ndarray) -> OddCurve:
-    """The odd side force (n,) [N] over an angle (n,) [rad] at the rows ``index``."""
-    u = evidence.parts.u_Fy_odd[index]
-    usual = USUAL_U_FORCE / math.sqrt(2.0)
-    return OddCurve(angle[index], odd[index], np.where(np.isfinite(u), u, usual))
+def _curve(
+    evidence: DirectEvidence, group: LoadGroup, angle: str, direction: int = 1, slope: float = 0.0
+) -> OddCurve:
+    """The odd side force over sideslip ("alpha") or camber ("gamma"), less ``slope`` [N/rad] times the sideslip.
+
+    On a straight path both branches are read, less the force at zero: ply-steer and conicity push alike on both.
+    """
+    points, slip, config = evidence.points, evidence.odd_slip, evidence.config
+    odd, x = evidence.odd_Fy - slope * slip, slip if angle == "alpha" else points.gamma
+    rows, u = sweep(points, odd, group, angle, config, direction), evidence.parts.u_Fy_odd
+    u = np.where(np.isfinite(u), u, USUAL_U_FORCE / math.sqrt(2.0))
+    if evidence.rig is not None:
+        return OddCurve(x[rows], odd[rows], u[rows])
+    mirrored = points.replace(alpha=-points.alpha, gamma=-points.gamma)
+    rows = np.concatenate([rows, sweep(mirrored, odd, group, angle, config, direction)])
+    zero = force_at_zero(points, group, direction, direction * slope or slope_at(None, group.load))
+    if zero is None:
+        rows, zero = rows[:0], named(0.0, 0.0, "no zero", "N")
+    shared = math.sqrt(len(rows)) * zero.std_dev  # an error of the zero is no smaller with more rows
+    y = np.sign(x[rows]) * (odd[rows] - zero.nominal_value)
+    return OddCurve(np.abs(x[rows]), y, np.hypot(u[rows], shared))
 
 
 def _chosen(config: Config, found: Estimates, load: float) -> tuple[SlopeAtZero | Secant | None, str | None]:

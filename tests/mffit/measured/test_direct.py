@@ -485,6 +485,34 @@ def test_a_flat_track_gives_stiffnesses_only():
     assert result.warnings == ()
 
 
+@pytest.mark.parametrize("least", [0.0, -41.0], ids=["camber one way", "camber both ways"])
+def test_what_pushes_alike_at_every_angle_is_no_stiffness_of_a_flat_track(least):
+    """90 N of conicity, and 0.06 deg of ply-steer: a ray from the origin would call both camber thrust."""
+    tyre = Plain(alpha_0=0.06 * DEGREE)
+    points = tyre.campaign(backward=False)
+    points = points.select(points.gamma > least * DEGREE - 1e-6)
+    flat = points.replace(Fy=points.Fy - tyre.turn_slip_force(points.Fz) + 90.0, phi_t=0.0)
+    result = measure(settings(type="flat-track", path_radius=None, u_path_radius=None), flat, split(flat))
+    for found, true in ((result.C_alpha, -12.0 * 1500.0), (result.C_gamma, -0.9 * 1500.0)):
+        assert abs(found.value - true) < 2.0 * found.u
+        assert found.u < 0.03 * abs(true)
+
+
+def test_two_cambers_that_the_rig_holds_loosely_are_no_curve():
+    """Readings of 1.59 and 1.60 deg are one set-point: their scatter tells no slope over camber."""
+    tyre = Plain()
+    points = tyre.campaign(backward=False)
+    points = points.select(points.gamma == 0.0)
+    lean = np.radians(np.repeat([1.6, 3.2], 6) + np.tile([-0.01, 0.0, 0.01], 4))
+    leant = points.select(np.zeros(len(lean), dtype=int)).replace(alpha=0.0 * lean, gamma=lean)
+    Fy, _ = tyre.readings(0.0 * lean, lean, leant.Fz, 1)
+    both = concatenate([points, leant.replace(Fy=Fy)])
+    flat = both.replace(Fy=both.Fy - tyre.turn_slip_force(both.Fz), phi_t=0.0)
+    result = measure(settings(type="flat-track", path_radius=None, u_path_radius=None), flat, split(flat))
+    assert result.C_alpha is not None
+    assert result.C_gamma is None
+
+
 def test_a_parabola_through_many_zeros_is_read_at_zero():
     """Five sideslip angles within 1.2 deg, forwards: the value at 0 of a curve that bends, not their mean."""
     tyre = Plain()
