@@ -1,7 +1,7 @@
 """Cornering and camber stiffness at one load, from its sweeps in both directions.
 
-The slope at zero comes from a fitted saturating curve and is cross-checked by a local cubic; the secant is that of the published
-procedure.
+The slope at zero comes from a fitted saturating curve and is cross-checked by a local polynomial; the secant is that of the
+published procedure.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class SlopeAtZero(NamedTuple):
 
     value: float
     u_noise: float  #: standard uncertainty from the scatter of the points
-    u_shape: float  #: half the difference of the two fitted shapes beyond noise; common to curves of one tyre
+    u_shape: float  #: from the difference of the two fitted shapes beyond noise; common to curves of one tyre
     dof: float  #: degrees of freedom of ``u_noise``
 
 
@@ -50,11 +50,12 @@ class OddCurve(NamedTuple):
     y: np.ndarray  #: (n,) odd part there
     u: np.ndarray  #: (n,) its standard uncertainty
 
-    def slope(self, *, local: float, curvature: float = 0.0) -> SlopeAtZero | None:
+    def slope(self, *, local: float, curvature: float = 0.0, sideslip: bool = False) -> SlopeAtZero | None:
         """Slope at zero; None if there are fewer than three set-points.
 
-        A cubic describes the curve up to the angle ``local`` [rad]. ``curvature`` is the prior standard deviation of the shape's
-        curvature E; 0 holds it at 0.
+        A second shape describes the curve up to the angle ``local`` [rad]: a cubic, or over ``sideslip`` a parabola of |x|, since
+        a contact patch slides from its rear end on. ``curvature`` is the prior standard deviation of the first shape's curvature
+        E; 0 holds it at 0.
         """
         x, y, u = self
         if _set_points(x) < 3:
@@ -66,10 +67,12 @@ class OddCurve(NamedTuple):
         near = x <= local * 1.01
         difference = constants.SLOPE_WITHOUT_CUBIC * abs(shape)
         if _set_points(x[near]) >= 3:
-            cubic, u_cubic = polynomial(x[near], y[near], u[near], (1, 3))
-            difference = math.sqrt(max((shape - cubic[0]) ** 2 - u_cubic[0] ** 2, 0.0))
+            other, u_other = polynomial(x[near], y[near], u[near], (1, 2) if sideslip else (1, 3))
+            difference = math.sqrt(max((shape - other[0]) ** 2 - u_other[0] ** 2, 0.0))
         u_noise *= max(1.0, scatter)
-        return SlopeAtZero(shape, u_noise, float(difference / 2.0), max(1.0, len(x) - 3.0))
+        # JCGM 100, F.2.4.5: smooth shapes err one way over sideslip; anywhere between is as likely, and that is not corrected.
+        u_shape = difference / (math.sqrt(3.0) if sideslip else 2.0)
+        return SlopeAtZero(shape, u_noise, float(u_shape), max(1.0, len(x) - 3.0))
 
     def secant(self, angle: float) -> Secant | None:
         """Secant y/x at an angle [rad], interpolated between neighbours; None outside the sweep."""
@@ -202,7 +205,7 @@ def cornering_stiffness(evidence: DirectEvidence, group: LoadGroup) -> UFloat | 
     """Slope of the side force over sideslip at zero [N/rad]; the secant if there are too few angles; None without either."""
     config, local = evidence.config, constants.CUBIC_SIDESLIP.rad
     curve = _curve(evidence, group, "alpha")
-    slope = curve.slope(local=local, curvature=float(constants.CURVATURE_SPREAD))
+    slope = curve.slope(local=local, curvature=float(constants.CURVATURE_SPREAD), sideslip=True)
     C_alpha = _number(slope or curve.secant(local), "cornering stiffness")
     if C_alpha is None or not config.rig.backlash_deg:
         return C_alpha

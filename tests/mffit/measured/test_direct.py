@@ -485,6 +485,23 @@ def test_a_flat_track_gives_stiffnesses_only():
     assert result.warnings == ()
 
 
+@pytest.mark.parametrize("friction", [0.8, 1.25])
+@pytest.mark.parametrize("Fz", [900.0, 2250.0])
+def test_the_cornering_stiffness_of_a_brush_is_within_what_is_stated(friction, Fz):
+    """Parabolic pressure (Pacejka 2012, 3.2): its secant falls with |alpha| from zero on, as that of no smooth odd curve."""
+
+    class Brush(Plain):
+        def readings(self, alpha, gamma, Fz, direction):
+            slides = np.minimum(self.cornering * np.abs(alpha) / (3.0 * friction), 1.0)
+            slip = -np.sign(alpha) * friction * Fz * (1.0 - (1.0 - slides) ** 3)
+            smooth, Mz = super().readings(0.0 * alpha, gamma, Fz, direction)
+            return direction * slip + smooth, Mz
+
+    found = measured(Brush(), (Fz,)).nominal.C_alpha
+    assert abs(found.value + 12.0 * Fz) < 2.0 * found.u
+    assert found.u < 0.06 * 12.0 * Fz
+
+
 @pytest.mark.parametrize("least", [0.0, -41.0], ids=["camber one way", "camber both ways"])
 def test_what_pushes_alike_at_every_angle_is_no_stiffness_of_a_flat_track(least):
     """90 N of conicity, and 0.06 deg of ply-steer: a ray from the origin would call both camber thrust."""
