@@ -16,7 +16,7 @@ POINTS_FOR_PARABOLA = Count(
     5, "-", "Fewest angles near zero from which a parabola gives the zero better than a mean."
 )
 
-CUBIC_SIDESLIP = Real(2.0, "deg", "Sideslip up to which a cubic describes the odd curve.")
+CUBIC_SIDESLIP = Real(2.0, "deg", "Sideslip up to which a polynomial describes the odd curve.")
 SLOPE_WITHOUT_CUBIC = Real(
     0.05, "-", "Relative difference of shapes assumed where too few points near zero allow a cubic."
 )
