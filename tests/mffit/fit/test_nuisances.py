@@ -19,6 +19,7 @@ from mffit.errors import InputError
 from mffit.fit.influences.confounding import confounding_sentence, confoundings, correlation_ratio
 from mffit.fit.influences.nuisance_choice import choose
 from mffit.fit.influences.nuisances import NUISANCES
+from mffit.fit.told import told_by_weights
 from mffit.pipeline.measuring import measure
 from mffit.points import make_points
 from mffit.quantities import CHARACTERISTICS, KEYS
@@ -184,8 +185,9 @@ def test_a_plan_in_which_temperature_runs_along_with_pressure_is_criticised(warm
 
 
 def test_the_growth_is_that_over_known_terms(warmed):
-    """By the conditional variance of the joint posterior."""
-    row, posterior = warmed[0].fit.confounded[0], warmed[0].fit.full.posterior
+    """By the conditional variance of the joint posterior of independent readings, as the fit weighs them."""
+    row, full = warmed[0].fit.confounded[0], warmed[0].fit.full
+    posterior = told_by_weights(full.problem, full.numbers, {})
     C = posterior.covariance
     i = posterior.names.index(row.coefficient)
     k = [posterior.names.index(name) for name in ("k_T_grip_per_K", "k_T_stiffness_per_K")]
