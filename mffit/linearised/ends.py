@@ -40,14 +40,13 @@ def growths(fit: LinearisedFit, channel: LinearisedChannel) -> np.ndarray:
 
 def _with_priors(fit: LinearisedFit, channel: LinearisedChannel) -> tuple[Mixed, Variances]:
     """The model with numbers that are free within their priors, because the present values are those of all readings."""
-    m, turned = len(channel.missed), channel.model.common[:, len(channel.missed) :]
-    slopes = turned @ np.linalg.inv(channel.turn)
+    m = len(channel.missed)
     known, free = np.linalg.norm(channel.turn, axis=1), [not number.held for number in fit.numbers]
     spread = np.array([number.spread for number in fit.numbers])
     has_prior = np.isfinite(spread)
     expected = np.where(has_prior, [number.expected for number in fit.numbers], 0.0)[free]
     size = np.where(has_prior, spread, constants.FREE_OVER_KNOWN * known)[free]
-    slopes = slopes[:, free]
+    slopes = channel.slopes[:, free]
     every = max(1, len(channel.rows) // (2 * (m + len(size))))  # two readings for each number are enough
     model = replace(
         channel.model,

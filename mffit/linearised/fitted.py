@@ -52,6 +52,11 @@ class LinearisedChannel(ReadOnlyArrays):
         return self.alone.smooth
 
     @cached_property
+    def slopes(self) -> np.ndarray:
+        """Derivatives (n, k) of the readings by the fit's numbers, over ``unit``."""
+        return np.asarray(self.model.common[:, len(self.missed) :] @ np.linalg.inv(self.turn))
+
+    @cached_property
     def posterior(self) -> MixedPosterior:
         """Posterior of the common numbers."""
         return self.model.posterior(self.variances)
@@ -276,15 +281,11 @@ class LinearisedFit:
         return [i for i, number in enumerate(self.numbers) if np.isfinite(number.spread)]
 
     def _told(self, which: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
-        """What the residuals of all channels tell of some numbers (j,) beside the model error.
-
-        Returns information (j, j), and score (j,) at the prior means.
-        """
+        """Information (j, j) of all channels about some numbers beside the model error, and score (j,) at the prior means."""
         expected = np.array([self.numbers[i].expected for i in which])
         information, pull = np.zeros((len(which), len(which))), np.zeros(len(which))
         for channel in self.channels.values():
-            turned = channel.model.common[:, len(channel.missed) :]
-            found = channel.told_beside(channel.model, turned @ np.linalg.inv(channel.turn)[:, which])
+            found = channel.told_beside(channel.model, channel.slopes[:, which])
             information, pull = information + found.information, pull + found.pull
         return information, pull - information @ expected
 

@@ -82,7 +82,7 @@ class SmoothFunctions(ReadOnlyArrays):
         return size, slope
 
     def unseen(self, pair: np.ndarray, lengths: np.ndarray) -> float:
-        """Variance, over that of the model error, of its difference between two conditions (2, d) that differ in one of them.
+        """Variance of the model error's change between two settings (2, d) of one condition, over that of the model error.
 
         All that readings at the settings of that condition, a spacing apart, show of it is taken as known. That is everything
         but over a swept slip: a force may bend faster around zero, where bristles begin to slide, than readings beside it show.
@@ -106,8 +106,8 @@ class SmoothFunctions(ReadOnlyArrays):
     def faded(self, settings: np.ndarray, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """:meth:`beyond` (n,) at ``settings`` (n, d), and the functions (n, m), which fade with it.
 
-        The fading model error is exp(-beyond/2) of that at the nearest tested settings. How far the tyre may be from it grows
-        without end: its variance is ``beyond`` times that of the model error, as that of a slope that nothing tested limits.
+        The fading model error is exp(-beyond/2) of that at the nearest tested settings. The tyre may stray from it ever farther:
+        the variance is ``beyond`` times that of the model error.
         """
         beyond = self.beyond(settings, lengths)
         return beyond, np.exp(-0.5 * beyond)[:, None] * self.columns(settings)

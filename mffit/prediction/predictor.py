@@ -110,8 +110,8 @@ class MissedChannel(ReadOnlyArrays):
     def _strays(self, settings: np.ndarray, of_load: np.ndarray) -> np.ndarray:
         """Variance (n,) of the tyre's force because conditions are beyond the tested ranges.
 
-        The model error goes on by a slope that nothing tested limits, of its standard deviation over its length, and the formula
-        strays by :attr:`growth`. The share ``of_load`` (n,) of a model error is left.
+        The model error goes on with an unknown slope, whose standard deviation is that of the model error over its length. The
+        formula strays by :attr:`growth`. The share ``of_load`` (n,) of a model error is left.
         """
         out = np.zeros(len(settings))
         each = zip(self.smooth.inputs, settings.T, self.components.lengths, self.growth, strict=True)

@@ -60,12 +60,12 @@ def _singles_and_pairs(count: int) -> Iterable[tuple[int, ...]]:
 
 
 class _Told(NamedTuple):
-    """What every file tells of the fit's numbers by one channel, as declared and, in the second place, with the other mount."""
+    """What one channel of each file tells of the fit's numbers: first with the declared mount, then with the other one."""
 
     information: np.ndarray  #: (2, files, k, k)
     pull: np.ndarray  #: (2, files, k)
     square: np.ndarray  #: (2, files) sums of squared residuals
-    stride: int  #: readings that each stands for
+    stride: int  #: readings that each examined one represents
 
     def evidence(self, files: Sequence[int]) -> float:
         """Log evidence of the readings if these files have the other mount."""
@@ -85,12 +85,12 @@ def _told(points: Points, fitted: FittedModel) -> Iterator[_Told]:
     here, there = (fitted.simulation.readings(one, names) for one in (points, other))
     odd = [number.name in BY_NAME and BY_NAME[number.name].odd for number in fitted.left.numbers]
     for name, channel in fitted.left.channels.items():
-        common, m = channel.model.common, len(channel.missed)
-        size = channel.turn * np.exp(0.5 * channel.variances.common[m:])
-        slopes = common[:, m:] @ np.linalg.inv(channel.turn)
+        size = channel.turn * np.exp(0.5 * channel.variances.common[len(channel.missed) :])
         change = (there[name] - here[name])[channel.rows] / channel.unit
         scale = max(robust(channel.model.residual), 1.0)
-        columns = [turned @ size / scale for turned in (slopes, np.where(odd, -slopes, slopes))]
+        columns = [
+            turned @ size / scale for turned in (channel.slopes, np.where(odd, -1.0, 1.0) * channel.slopes)
+        ]
         residuals = [one / scale for one in (channel.model.residual, channel.model.residual - change)]
         file = points.file[channel.rows]
         parts = [
