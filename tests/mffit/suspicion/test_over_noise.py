@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from plain_pages import without_pictures
 from small_rigs import FY, SAMPLE, flat, simulated, sound
 
 import mffit
@@ -50,7 +51,8 @@ def few(tmp_path_factory):
         table = pd.read_csv(path)
         own = table.assign(u_Fy_N=2.0 * FY) if path.name == "coupled.csv" else silent(table)
         own.to_csv(path, index=False)
-    return mffit.build(folder / "tyre.toml", folder / "out"), folder / "out"
+    with without_pictures():
+        return mffit.build(folder / "tyre.toml", folder / "out"), folder / "out"
 
 
 @pytest.fixture(scope="module")
