@@ -146,7 +146,7 @@ def test_no_command_lets_a_warning_through_about_readings(tmp_path, monkeypatch,
 
 @pytest.mark.parametrize("kind", FILES)
 def test_no_command_lets_a_warning_through_about_coefficients(tmp_path, monkeypatch, kind):
-    monkeypatch.setattr(constants, "TABLE_NODES", 10_000)  # no table of such a file is near enough
+    monkeypatch.setattr(constants, "TABLE_TRIES", 1)  # no table of such a file is near enough
     text = TRUE.read_text(encoding="utf-8")
     for name, value in (FILES[kind] or {}).items():
         text, count = re.subn(rf"^({name}\s*=\s*)\S+", rf"\g<1>{value}", text, flags=re.MULTILINE)
