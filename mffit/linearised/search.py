@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy  # its parts are loaded on first use
 
 from mffit.least_squares import UNDAMPED, Quadratic, next_damping
 from mffit.linearised import constants
@@ -100,7 +100,9 @@ class ParameterSearch(NamedTuple):
             "maxiter": int(constants.SEARCH_STEPS),
             "ftol": constants.SEARCH_TOLERANCE / max(self.readings, 1),
         }
-        found = minimize(loss, start, jac=True, method="L-BFGS-B", bounds=bounds, options=options)
+        found = scipy.optimize.minimize(
+            loss, start, jac=True, method="L-BFGS-B", bounds=bounds, options=options
+        )
         return np.asarray(found.x)
 
     def log_probability(self, x: np.ndarray) -> float:
@@ -128,6 +130,7 @@ class Scoring(NamedTuple):
 
     parameters: Sequence[SearchedParameter]
     evidence: Callable[[np.ndarray], Scored]  #: log evidence at the parameters
+    tolerance: float = constants.SEARCH_TOLERANCE  #: gain of log evidence by a step at which the search ends
 
     def density(self, x: np.ndarray) -> Scored:
         """Log posterior density."""
@@ -153,7 +156,7 @@ class Scoring(NamedTuple):
             step, last = form.move(damping), form.move(UNDAMPED)
             assert step is not None
             assert last is not None
-            if 0.5 * form.gain(last) < constants.SEARCH_TOLERANCE:
+            if 0.5 * form.gain(last) < self.tolerance:
                 return np.asarray(np.clip(x + last, lower, upper))
             there = self.density(trial := np.clip(x + step, lower, upper))
             rise, promised = there.value - here.value, 0.5 * form.gain(step)
