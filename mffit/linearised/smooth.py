@@ -100,19 +100,19 @@ class SmoothFunctions(ReadOnlyArrays):
             known = change[2:] @ np.linalg.solve(alike[2:, 2:], change[2:])
         others = pair[:1].copy()
         others[0, differs] = one.lower
-        (beyond,) = self.beyond(others, lengths)
-        return max(float(whole - np.exp(-beyond) * known), 0.0)
+        (squared,) = self.squared_distance(others, lengths)
+        return max(float(whole - np.exp(-squared) * known), 0.0)
 
     def faded(self, settings: np.ndarray, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """:meth:`beyond` (n,) at ``settings`` (n, d), and the functions (n, m), which fade with it.
+        """:meth:`squared_distance` (n,) of ``settings`` (n, d), and the functions (n, m), which fade with it.
 
-        The fading model error is exp(-beyond/2) of that at the nearest tested settings. The tyre may stray from it ever farther:
-        the variance is ``beyond`` times that of the model error.
+        The fading model error is exp(-squared/2) of that at the nearest tested settings. The tyre may stray from it ever farther:
+        the variance is ``squared`` times that of the model error.
         """
-        beyond = self.beyond(settings, lengths)
-        return beyond, np.exp(-0.5 * beyond)[:, None] * self.columns(settings)
+        squared = self.squared_distance(settings, lengths)
+        return squared, np.exp(-0.5 * squared)[:, None] * self.columns(settings)
 
-    def beyond(self, at: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    def squared_distance(self, at: np.ndarray, lengths: np.ndarray) -> np.ndarray:
         """Squared distance (n,) of conditions (n, d) from the nearest tested ones, in lengths; 0 inside the range.
 
         A condition that is NaN counts as tested.

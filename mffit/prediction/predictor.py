@@ -89,9 +89,9 @@ class MissedChannel(ReadOnlyArrays):
 
         Conditions ``at_zero`` of a slip are so close that readings beside them need not show how the force bends there.
         """
-        beyond, functions = self._functions(settings)
+        squared, functions = self._functions(settings)
         ((one, other),) = self._rows(functions, slopes)
-        unlike = np.sum(beyond)
+        unlike = np.sum(squared)
         if at_zero:
             unlike = self.smooth.unseen(settings, np.array(self.components.lengths))
         return float(np.sqrt(np.sum((one - other) ** 2) + unlike * self.components.missed**2))

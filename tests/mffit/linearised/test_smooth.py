@@ -74,7 +74,7 @@ def test_beyond_the_tested_range_the_functions_stay_and_fade():
 def test_a_tyre_at_one_condition_has_a_constant_only():
     smooth = SmoothFunctions.over(())
     assert np.array_equal(smooth.columns(np.empty((3, 0))), np.ones((3, 1)))
-    assert np.array_equal(smooth.beyond(np.empty((3, 0)), np.empty(0)), np.zeros(3))
+    assert np.array_equal(smooth.squared_distance(np.empty((3, 0)), np.empty(0)), np.zeros(3))
 
 
 def test_many_conditions_keep_to_the_largest_functions():
