@@ -76,7 +76,6 @@ def output_folder(
     by: str = "mffit",
     of: Project = UNKNOWN,
     protected: Iterable[Path] = (),
-    outdated: Collection[str] = (),
 ) -> Iterator[Path]:
     """A temporary folder next to ``out`` whose files move to ``out`` only if the block succeeds.
 
@@ -87,8 +86,8 @@ def output_folder(
     content is the same. A file that the run reads is never replaced by other content, nor removed.
 
     A folder holds the results of one project: with ``of``, the folder of another one is refused, and unchanged files that an
-    earlier run of the command wrote, and this one does not, are removed. Without ``of`` they are removed from the folders within
-    ``out`` that the run writes to, and those called ``outdated`` from ``out``. All other files stay.
+    earlier run of the command wrote, and this one does not, are removed. Without ``of`` they are removed only from the folders
+    within ``out`` that the run writes to. All other files stay.
 
     An interrupted or failed run leaves ``out`` unchanged. A killed run leaves its temporary folder, whose name has machine and
     process; the next run to the same place removes it. If the run was killed while its finished files were moving, the record
@@ -99,7 +98,7 @@ def output_folder(
     temporary = _temporary_folder(out)
     try:
         yield temporary
-        _publish(temporary, out, _Run(by, of.seen_from(out), tuple(protected), outdated))
+        _publish(temporary, out, _Run(by, of.seen_from(out), tuple(protected)))
     except OSError as error:
         if error.errno not in DISK_FULL:
             raise
@@ -128,7 +127,6 @@ class _Run(NamedTuple):
     by: str
     of: Project  #: seen from the folder
     protected: Sequence[Path]
-    outdated: Collection[str]
 
 
 def _publish(temporary: Path, out: Path, run: _Run) -> None:
@@ -202,7 +200,7 @@ def refuse_early(
     """
     refuse_unusable(out)
     if out.is_dir():
-        run = _Run("", of.seen_from(out), tuple(protected), ())
+        run = _Run("", of.seen_from(out), tuple(protected))
         _refuse(out, dict.fromkeys(names, ""), _recorded(out), run)
 
 
@@ -282,7 +280,7 @@ def _reason_to_keep(target: Path, new: str, entry: OutputEntry | None, inputs: I
 def _stale(out: Path, run: _Run, written: Mapping[str, str], recorded: _Record) -> list[str]:
     """Unchanged files of an earlier run of this command that this run neither wrote again nor reads.
 
-    All if both are of one project; else those in the folders that this run wrote to, and those called outdated.
+    All if both are of one project; else those in the folders that this run wrote to.
     """
     together = bool(run.of.name and recorded.project.name)
     folders = {PurePosixPath(name).parent for name in written} - {PurePosixPath(".")}
@@ -291,7 +289,7 @@ def _stale(out: Path, run: _Run, written: Mapping[str, str], recorded: _Record) 
         name
         for name, entry in recorded.files.items()
         if name not in written
-        and (together or PurePosixPath(name).parent in folders or name in run.outdated)
+        and (together or PurePosixPath(name).parent in folders)
         and entry.by == run.by
         and _is_unchanged(out, name, entry)
         and (out / name).resolve() not in inputs

@@ -19,7 +19,7 @@ from mffit.fit import priors
 from mffit.fit.influences.nuisances import of_run
 from mffit.fleet import Fleet, Hierarchy, Row, Specimen, TyreEstimate
 from mffit.numbers import Numbers
-from mffit.output import output_folder, refuse_early
+from mffit.output import Project, output_folder, refuse_early
 from mffit.pipeline.build_output import numbers
 from mffit.pipeline.fleet_notes import fleet_notes, note_on_sharing
 from mffit.progress import Progress, silent
@@ -30,6 +30,7 @@ from mffit.viewer.named import tell_apart
 from tir import Quantity
 
 WRITTEN = ("fleet.html", "fleet.json", "fleet.csv", "priors.json")
+FLEET = Project("a fleet")
 
 
 def fleet(
@@ -52,7 +53,7 @@ def fleet(
     if len({place.resolve() for place in places}) < max(len(places), 2):
         raise InputError("a fleet needs two or more built tyres, each named once: mffit fleet DIR DIR...")
     if out is not None:
-        refuse_early(Path(out), WRITTEN)
+        refuse_early(Path(out), WRITTEN, of=FLEET)
     progress("reading the builds")
     specimens = _with_names_apart([combining.read(place) for place in places])
     rig_of = _rig_indices(specimens)
@@ -157,7 +158,7 @@ def write_fleet(found: Fleet, out: Path) -> None:
 
     known = priors_of_fleet(found)
     read = [row.specimen.folder / combining.INFORMATION for row in found.rows]
-    with output_folder(out, by="fleet", protected=read, outdated=WRITTEN) as folder:
+    with output_folder(out, by="fleet", protected=read, of=FLEET) as folder:
         write_csv(fleet_table(found), folder / "fleet.csv")
         as_json.write(folder / "fleet.json", found)
         if known is not None:
