@@ -78,6 +78,8 @@ CONDITIONS = {
     "t_s": QuantityName("time", "t", "s"),
 }
 """Conditions of a point, by their column."""
+COLUMNS = {column.partition("_")[0]: column for column in CONDITIONS}
+"""Column of a condition by the field of the points."""
 CHANNELS = {
     "Fx": QuantityName("longitudinal force", "F_x", "N"),
     "Fy": QuantityName("side force", "F_y", "N"),

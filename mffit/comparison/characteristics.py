@@ -11,13 +11,12 @@ import numpy as np
 import pandas as pd
 
 from mffit.constants import COVERAGE_FACTOR_95, UPRIGHT
-from mffit.linearised.inputs import COLUMNS
 from mffit.numbers import Numbers
 from mffit.points import make_points
 from mffit.points.points import of_si
 from mffit.prediction import Predictor
 from mffit.prediction.conditions import PATH
-from mffit.quantities import CHARACTERISTICS
+from mffit.quantities import CHARACTERISTICS, COLUMNS
 from mffit.rounding import AtLeast
 from mffit.tested import tested_limit
 from tir import Quantity, Tyre

@@ -14,13 +14,7 @@ def by_condition(points: Points) -> Points:
     A file may contain a whole programme. A quantity that changes from point to point was swept and causes no cut. In the result
     ``sweep`` is the index of the condition; conditions are named after their sweep, with a number if it has several.
     """
-    held = (
-        (points.Fz, levels.LOAD),
-        (points.gamma, levels.CAMBER),
-        (points.p, levels.PRESSURE),
-        (points.V, levels.SPEED),
-        (points.kappa, levels.SLIP),
-    )
+    held = [(getattr(points, name), kind) for name, kind in levels.KINDS.items() if name != "alpha"]
     sweep = np.zeros(len(points), dtype=int)
     names: list[str] = []
     for k in np.unique(points.sweep):

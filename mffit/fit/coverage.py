@@ -63,7 +63,7 @@ class Design:
 def design(points: Points, side: str) -> Design:
     """The test plan of a tyre of this side."""
     curved = bool(np.any(points.phi_t != 0.0))
-    held = levels.labels_of_sweeps(points.Fz, points.sweep, levels.LOAD)
+    held = levels.labels_of_setting(points, "Fz")
     # Points of an upright wheel rolling straight show radii, not stiffnesses, so their pressures do not count here.
     load = np.where(_straight_on(points), levels.NO_LEVEL, held)
     pressures_at = [levels.count(points.p[load == k], levels.PRESSURE) for k in np.unique(load[load >= 0])]

@@ -11,19 +11,11 @@ from mffit.linearised import constants
 from mffit.points import Points, levels
 from mffit.points.clock import goes_both_ways
 from mffit.points.constants import CORE
-from mffit.quantities import CONDITIONS, REVERSED_BY_HALF_A_TURN
+from mffit.quantities import COLUMNS, CONDITIONS, REVERSED_BY_HALF_A_TURN
 from tir.constants import SMALLEST_LOAD
 
-LEVELS: Mapping[str, levels.LevelKind] = {
-    "alpha": levels.SIDESLIP,
-    "kappa": levels.SLIP,
-    "Fz": levels.LOAD,
-    "gamma": levels.CAMBER,
-    "p": levels.PRESSURE,
-}
-"""Settings of a test plan and the tolerance of their levels."""
-COLUMNS: Mapping[str, str] = {column.partition("_")[0]: column for column in CONDITIONS}
-"""Column of a table by condition."""
+LEVELS = {name: kind for name, kind in levels.KINDS.items() if name != "V"}
+"""Settings of a test plan over which the model error varies, and the tolerance of their levels."""
 OTHER_WORDS: Mapping[str, str] = {
     "phi_t": "path curvature",
     "mount": "mount of the tyre or direction of rolling",

@@ -33,10 +33,10 @@ PRESSURE = LevelKind("pressure", constants.PRESSURE)  # [Pa]
 SPEED = LevelKind("speed", constants.CONDITION, relative=True)  # [m/s]
 SIDESLIP = LevelKind("sideslip", STRAIGHT.rad)  # [rad]
 SLIP = LevelKind("longitudinal slip", constants.SLIP)  # [-]
-KINDS = {kind.name: kind for kind in (LOAD, CAMBER, PRESSURE, SPEED, SIDESLIP, SLIP)}
-"""Kinds of levels by the word of the quantity in :mod:`mffit.quantities`."""
-SETTINGS = (("Fz", "Fz_N", LOAD), ("gamma", "gamma_deg", CAMBER), ("p", "p_kPa", PRESSURE))
-"""Fields of the settings that label sweeps, their columns and kinds of levels."""
+KINDS = {"alpha": SIDESLIP, "kappa": SLIP, "Fz": LOAD, "gamma": CAMBER, "p": PRESSURE, "V": SPEED}
+"""Kinds of levels by the field of :class:`Points`."""
+SETTINGS = ("Fz", "gamma", "p")
+"""Fields of the settings that label sweeps."""
 
 NO_LEVEL = -1
 """Label of a value outside all levels."""
@@ -79,9 +79,10 @@ def labels_of_sweeps(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) -> 
     return nearest_labels(held, kind)
 
 
-def labels_of_setting(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) -> np.ndarray:
-    """Index (n,) of the intended level of each value: by :func:`labels_of_sweeps` for a load, else :func:`nearest_labels`."""
-    return labels_of_sweeps(values, sweep, kind) if kind is LOAD else nearest_labels(values, kind)
+def labels_of_setting(points: Points, name: str) -> np.ndarray:
+    """Index (n,) of the intended level of each point: by :func:`labels_of_sweeps` for a load, else :func:`nearest_labels`."""
+    values, kind = getattr(points, name), KINDS[name]
+    return labels_of_sweeps(values, points.sweep, kind) if kind is LOAD else nearest_labels(values, kind)
 
 
 def _is_held(scaled: np.ndarray) -> bool:

@@ -11,9 +11,9 @@ from mffit.points.noise import neighbour_noise, stating
 from mffit.points.points import Points
 from mffit.scatter import rms
 
-HELD = (("Fz", levels.LOAD), ("p", levels.PRESSURE))
+HELD = ("Fz", "p")
 """Settings that no curve goes over."""
-VARIED = (("alpha", levels.SIDESLIP), ("gamma", levels.CAMBER), ("kappa", levels.SLIP))
+VARIED = ("alpha", "gamma", "kappa")
 """Quantities of which a curve goes over one."""
 
 
@@ -41,17 +41,16 @@ def noise(points: Points) -> np.ndarray:
     return np.where(stating(points.u_Fy), points.u_Fy, neighbour_noise(points, points.Fy))
 
 
-def conditions(points: Points, settings: Sequence[tuple[str, levels.LevelKind]]) -> np.ndarray:
+def conditions(points: Points, settings: Sequence[str]) -> np.ndarray:
     """Condition (n, k) of each point: labels of settings, direction, mount and path, and the step of sideslip."""
-    return np.column_stack(
-        [
-            *(levels.labels_of_setting(getattr(points, name), points.sweep, kind) for name, kind in settings),
-            points.direction,
-            points.mount,
-            np.unique(points.phi_t, return_inverse=True)[1],
-            np.round(points.alpha / STRAIGHT.rad).astype(int),
-        ]
-    )
+    return np.column_stack([_held(points, settings), np.round(points.alpha / STRAIGHT.rad).astype(int)])
+
+
+def _held(points: Points, settings: Sequence[str]) -> np.ndarray:
+    """Labels (n, k) of settings, direction, mount and path."""
+    labels = [levels.labels_of_setting(points, name) for name in settings]
+    path = np.unique(points.phi_t, return_inverse=True)[1]
+    return np.column_stack([*labels, points.direction, points.mount, path])
 
 
 def curves(points: Points) -> np.ndarray:
@@ -60,17 +59,11 @@ def curves(points: Points) -> np.ndarray:
     It is that of sideslip, camber and longitudinal slip with the most levels at a load, pressure and path; the others are held.
     A curve and its mirror image are one.
     """
-    held = [levels.labels_of_setting(getattr(points, name), points.sweep, kind) for name, kind in HELD]
-    at = [
-        points.sweep,
-        *held,
-        points.direction,
-        points.mount,
-        np.unique(points.phi_t, return_inverse=True)[1],
-    ]
     out, known = np.zeros(len(points), dtype=int), 0
-    for rows in levels.rows_of_equal(np.column_stack(at)):
-        found = [levels.nearest_labels(np.abs(getattr(points, name)[rows]), kind) for name, kind in VARIED]
+    for rows in levels.rows_of_equal(np.column_stack([points.sweep, _held(points, HELD)])):
+        found = [
+            levels.nearest_labels(np.abs(getattr(points, name)[rows]), levels.KINDS[name]) for name in VARIED
+        ]
         found.pop(int(np.argmax([len(np.unique(own)) for own in found])))
         for own in levels.rows_of_equal(np.column_stack(found)):
             out[rows[own]], known = known, known + 1

@@ -15,11 +15,8 @@ from mffit.constants import EXPLAINED_SHARE, FALSE_ALARM, FEWEST
 from mffit.points import levels
 from mffit.points.like import MeanReadings, conditions, mean_readings, noise, rolling
 from mffit.points.points import Points, of_si
-from mffit.quantities import CONDITIONS
+from mffit.quantities import COLUMNS, CONDITIONS
 from mffit.scatter import ALARM, rms
-
-LABELS = {setting: (column, kind) for setting, column, kind in levels.SETTINGS}
-"""By setting, its column and its levels."""
 
 
 class OtherLabel(NamedTuple):
@@ -63,7 +60,7 @@ def other_labels(points: Points) -> tuple[OtherLabel, ...]:
     u = noise(used)
     found: list[OtherLabel] = []
     while len(np.unique(used.sweep)) > 2:
-        labelled = [_Labelled.of(setting, used, u) for setting in LABELS]
+        labelled = [_Labelled.of(setting, used, u) for setting in levels.SETTINGS]
         candidates = sum(len(one.label) * (len(one.values) - 1) for one in labelled)
         suspects = [one for each in labelled for one in each.suspects(used, candidates)]
         if not suspects:
@@ -131,8 +128,7 @@ class _Labelled:
     @classmethod
     def of(cls, setting: str, points: Points, u: np.ndarray) -> _Labelled:
         """The sweeps of some points under a setting; ``u`` (n,) are standard errors [N]."""
-        _, kind = LABELS[setting]
-        label = levels.labels_of_setting(getattr(points, setting), points.sweep, kind)
+        label = levels.labels_of_setting(points, setting)
         values = {
             k: float(np.median(getattr(points, setting)[label == k])) for k in np.unique(label).tolist()
         }
@@ -172,7 +168,7 @@ class _Labelled:
 
     def suspects(self, points: Points, candidates: int) -> Iterator[OtherLabel]:
         """The sweeps that fit another label, of so many candidates."""
-        column, _ = LABELS[self.setting]
+        column = COLUMNS[self.setting]
         scale = of_si(column)
         for sweep, at in self.label.items():
             sound = _Compared.joined([one for k in self.values for one in self.between(k, k, without=sweep)])
@@ -213,7 +209,7 @@ class _Labelled:
 
 def _keys(setting: str, points: Points) -> np.ndarray:
     """Per point (n, 7) what must be alike to compare sweeps under a setting: the labels of the others first, sideslip last."""
-    others = [(name, kind) for name, (_, kind) in LABELS.items() if name != setting]
+    others = [name for name in levels.SETTINGS if name != setting]
     alike = conditions(points, others)
     return np.column_stack([alike[:, : len(others)], points.setup, alike[:, len(others) :]])
 

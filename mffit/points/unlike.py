@@ -12,7 +12,7 @@ from mffit.points.points import Points
 from mffit.quantities import CONDITIONS
 from mffit.scatter import ALARM, rms
 
-SETTINGS = (*((setting, kind) for setting, _, kind in levels.SETTINGS), ("V", levels.SPEED))
+SETTINGS = (*levels.SETTINGS, "V")
 
 
 class Unlike(NamedTuple):

@@ -12,11 +12,10 @@ import numpy as np
 import pandas as pd
 
 from mffit.csv_tables import csv_text
-from mffit.linearised.inputs import COLUMNS
 from mffit.points.points import of_si
 from mffit.prediction import constants
 from mffit.prediction.predictor import Predictor
-from mffit.quantities import column
+from mffit.quantities import COLUMNS, column
 from mffit.scatter import rms
 from tir import Tyre
 from tir.constants import SLIP_OF_FREE_ROLLING

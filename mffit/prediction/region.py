@@ -12,14 +12,14 @@ import pandas as pd
 from scipy.special import ndtr
 
 from mffit.constants import COVERAGE_FACTOR_95, FALSE_ALARM
-from mffit.linearised.inputs import COLUMNS, LEVELS, inputs_of, swept_of
+from mffit.linearised.inputs import LEVELS, inputs_of, swept_of
 from mffit.points import Points, levels
 from mffit.points.points import of_si
 from mffit.prediction import constants
 from mffit.prediction.conditions import PATH, UNITS
 from mffit.prediction.predictor import Predictor
 from mffit.prediction.slopes import MissedSlope, missed_slopes
-from mffit.quantities import column
+from mffit.quantities import COLUMNS, column
 from mffit.rig import Readings, Simulation
 from mffit.scatter import rms
 from tir import Tyre

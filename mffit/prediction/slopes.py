@@ -8,11 +8,10 @@ import numpy as np
 import pandas as pd
 
 from mffit.constants import COVERAGE_FACTOR_95
-from mffit.linearised.inputs import COLUMNS, LEVELS
 from mffit.points import Points, levels, main_pressure
 from mffit.points.points import of_si
 from mffit.prediction.predictor import Predictor
-from mffit.quantities import column
+from mffit.quantities import COLUMNS, column
 from tir import Tyre
 
 
@@ -35,7 +34,7 @@ def missed_slopes(
         "gamma_deg": 0.0,
         "p_kPa": 1e-3 * float(np.median(points.p[main_pressure(points)])),
     }
-    ends = LEVELS[slip].tolerance * of_si(COLUMNS[slip]) * np.array([-1.0, 1.0])
+    ends = levels.KINDS[slip].tolerance * of_si(COLUMNS[slip]) * np.array([-1.0, 1.0])
     found = []
     for load in np.unique(levels.level_values(points.Fz, levels.LOAD)):
         both = pd.DataFrame({**at, "Fz_N": load, COLUMNS[slip]: ends})

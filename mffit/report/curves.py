@@ -62,7 +62,7 @@ class CurveCondition(ReadOnlyArrays):
 
 def _load_and_pressure(points: Points) -> tuple[np.ndarray, np.ndarray]:
     """Load [N] and pressure [kPa] of each point's level, rounded to what rigs hold and gauges show."""
-    held = levels.labels_of_sweeps(points.Fz, points.sweep, levels.LOAD)
+    held = levels.labels_of_setting(points, "Fz")
     load = levels.median_of_labels(points.Fz, held)
     return np.round(load, -1), np.round(levels.level_values(points.p, levels.PRESSURE) / 1000.0)
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from mffit.constants import FEWEST
 from mffit.points import Points, levels
+from mffit.quantities import COLUMNS
 from tir.frozen import ReadOnlyArrays
 
 
@@ -47,9 +48,10 @@ def confirmed_by_others(part: Points, others: Points, columns: Collection[str] =
     If not, only the formula predicts the sweep from them, and it may be wrong between two loads, cambers or pressures. Between
     the outermost of several levels the readings confirm it.
     """
-    for name, column, kind in levels.SETTINGS:
-        if columns and column not in columns:
+    for name in levels.SETTINGS:
+        if columns and COLUMNS[name] not in columns:
             continue
+        kind = levels.KINDS[name]
         own, known = (np.abs(getattr(of, name)) for of in (part, others))
         several = levels.count(known, kind) >= FEWEST
         own, known = (levels.in_tolerances(values, kind) for values in (own, known))
@@ -81,7 +83,7 @@ def _conditions(points: Points) -> Iterator[Group]:
 
 def _parts(points: Points) -> Iterator[tuple[Group, np.ndarray, bool]]:
     """Every sweep with the indices (m,) of one of its conditions, and whether camber distinguishes the conditions."""
-    load = levels.labels_of_sweeps(points.Fz, points.sweep, levels.LOAD)
+    load = levels.labels_of_setting(points, "Fz")
     pressure = levels.nearest_labels(points.p, levels.PRESSURE)
     camber = levels.nearest_labels(points.gamma, levels.CAMBER)
     for sweep in _sweeps(points):

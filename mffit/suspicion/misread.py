@@ -13,7 +13,7 @@ from mffit.constants import FEWEST
 from mffit.points import Points, levels
 from mffit.points.constants import UNLIKE_SHARE
 from mffit.points.points import of_si
-from mffit.quantities import CONDITIONS, SIDEWAYS
+from mffit.quantities import COLUMNS, CONDITIONS, SIDEWAYS
 from mffit.rig import Simulation
 from mffit.scatter import robust, usual_size
 from mffit.suspicion import constants
@@ -123,8 +123,8 @@ def _differ_only_in(part: Points, other: Points, channel: str) -> bool:
     if part.direction[0] != other.direction[0] or part.mount[0] != other.mount[0]:
         return False
     return all(
-        abs(_held(part, name) - _held(other, name)) <= _near(kind, _held(part, name))
-        for name, _, kind in levels.SETTINGS
+        abs(_held(part, name) - _held(other, name)) <= _near(levels.KINDS[name], _held(part, name))
+        for name in levels.SETTINGS
         if name != channel
     )
 
@@ -140,8 +140,8 @@ def _candidates(
     if not confirming:
         rest = points.select(points.sweep != part.sweep[0])
         yield from certain_mistakes(part, signs, rest, by_formula=False)
-    for channel, column, kind in levels.SETTINGS:
-        held = getattr(part, channel)
+    for channel in levels.SETTINGS:
+        held, kind = getattr(part, channel), levels.KINDS[channel]
         here, size = float(np.mean(held)), _held(part, channel)
         near = _near(kind, here)
         if confirming:
@@ -152,7 +152,7 @@ def _candidates(
             continue
         for level in np.unique(np.round(levels.level_values(getattr(points, channel), kind), 9)):
             if abs(level - here) > near:
-                mistake = _run_at(channel, column, signs, here, float(level))
+                mistake = _run_at(channel, COLUMNS[channel], signs, here, float(level))
                 yield mistake, mistake.undone(part, signs)
 
 

@@ -152,7 +152,6 @@ def _rolls_upright(points: Points) -> np.ndarray:
 
 def _cells(points: Points, radius: MeasuredRadius) -> pd.DataFrame:
     """Median and number of the radii by file and by level of load [N], pressure [Pa] and speed [m/s]."""
-    settings = (("Fz", levels.LOAD), ("p", levels.PRESSURE), ("V", levels.SPEED))
-    keys = {name: levels.level_values(getattr(points, name), kind) for name, kind in settings}
+    keys = {name: levels.level_values(getattr(points, name), levels.KINDS[name]) for name in ("Fz", "p", "V")}
     table = pd.DataFrame({"file": points.file, **keys, "radius": radius.of(points)})
     return table.groupby(["file", *keys]).radius.agg(["median", "size"])

@@ -13,7 +13,7 @@ import numpy as np
 
 from mffit.constants import EXPLAINED_SHARE
 from mffit.points import Points, levels
-from mffit.quantities import CHANNELS
+from mffit.quantities import CHANNELS, COLUMNS
 from mffit.quantities import column as heading
 from mffit.rig import Simulation
 from mffit.rig_errors import BY_NAME
@@ -54,7 +54,7 @@ class Mistake:
         At a load, camber or pressure that ``others`` do not cover, a tyre may differ by a small factor from what they show, and
         by any but a large factor from a prediction ``by_formula``. A wrong setting is certain if others confirm the true one.
         """
-        if self.factor > 1.0 and any(self.column == column for _, column, _ in levels.SETTINGS):
+        if self.factor > 1.0 and any(self.column == COLUMNS[name] for name in levels.SETTINGS):
             return confirmed_by_others(undone, others, {self.column})
         if self.factor > constants.LARGEST_ERROR_OF_FORMULA or (self.factor == 1.0 and not by_formula):
             return True

@@ -10,7 +10,7 @@ from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import FitResult
 from mffit.points import Points, concatenate, levels
 from mffit.points.noise import stating
-from mffit.quantities import CHANNELS, CONDITIONS, MODEL, QuantityName
+from mffit.quantities import CHANNELS, COLUMNS, CONDITIONS, MODEL, QuantityName
 from mffit.rig import Simulation
 from mffit.viewer import constants
 from mffit.viewer.controls import in_si
@@ -19,8 +19,10 @@ from tir.codegen.program import INPUTS, LOADED
 
 MEASURED_ONLY = {"T": CONDITIONS["T_degC"], "t": CONDITIONS["t_s"]}
 """Conditions of points that are not inputs of the model."""
-FACETS = {name: levels.KINDS[MODEL[name].word] for name in INPUTS if MODEL[name].word in levels.KINDS}
-"""Inputs of the model whose set-points have levels."""
+FACETS = {
+    name: field for name in INPUTS for field in levels.KINDS if MODEL[name] is CONDITIONS[COLUMNS[field]]
+}
+"""Field of the points by input of the model, where set-points have levels."""
 BITS_OF_BANDS = 12
 """Bits of their numbers: finer than a pixel."""
 
@@ -133,9 +135,8 @@ def facets(points: Points) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]
     """
     inputs = _arrays(points)
     found, groups = [], {}
-    for name, kind in FACETS.items():
-        values = np.abs(inputs[name]) if name == "Vx" else inputs[name]
-        meant = levels.labels_of_setting(values, points.sweep, kind)
+    for name, field in FACETS.items():
+        meant = levels.labels_of_setting(points, field)
         of = _ranks(meant) - int(np.any(meant == levels.NO_LEVEL))
         medians = [float(np.median(inputs[name][of == k])) for k in range(of.max(initial=-1) + 1)]
         found.append(_facet(name, MODEL[name].word, [_said(MODEL[name], x) for x in medians], [name]))

@@ -18,7 +18,7 @@ from mffit.fit.influences.nuisances import NUISANCES, Nuisance
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber, solve
 from mffit.left_out import clearly_above_zero
-from mffit.linearised.inputs import LEVELS, word_of
+from mffit.linearised.inputs import word_of
 from mffit.points import Points, levels
 from mffit.rig_errors import T_REF
 from mffit.suspicion import parts_of_sweeps
@@ -228,17 +228,17 @@ def _of_runs(
     gain = differ.value - joint.model.evidence(alike).value
     if not beyond_chance(gain, len(scatter)):
         return Verdict(nuisance, False, _WITHIN_CHANCE, *gaps), {}
-    for name in ("Fz", "gamma", "p"):
-        held = levels.labels_of_setting(getattr(points, name), points.sweep, LEVELS[name])
-        by_level = model.joint(np.unique(held, return_inverse=True)[1]).explained().value
-        if by_level > differ.value - (1.0 - MOST) * gain:
-            reason = f"it follows the {word_of(name)}, over which the formula misses the tyre"
-            return Verdict(nuisance, False, reason, *gaps), {}
     # The gain must be significant over the runs: scatter shows in most runs, not in a few.
     of_run = np.unique(halves[joint.looked_at]) // 2
     if not clearly_above_zero(np.bincount(of_run, without.squares - beside.squares)):
         reason = "left-out halves of sweeps are not predicted clearly better with it"
         return Verdict(nuisance, False, reason, *gaps), {}
+    for name in levels.SETTINGS:
+        held = levels.labels_of_setting(points, name)
+        by_level = model.joint(np.unique(held, return_inverse=True)[1]).explained().value
+        if by_level > differ.value - (1.0 - MOST) * gain:
+            reason = f"it follows the {word_of(name)}, over which the formula misses the tyre"
+            return Verdict(nuisance, False, reason, *gaps), {}
     without, beside = (joint.left_out(of, sweeps) for of in (alike, differ.given))
     if np.mean(np.log(beside.squares / without.squares)) > 0.0:  # the logarithm gives every run equal weight
         reason = "whole left-out sweeps are predicted worse with it, because the formula misses them"

@@ -129,7 +129,7 @@ def _middle(alpha: np.ndarray) -> tuple[float, float]:
 def _beyond_conditions(points: Points, moving: np.ndarray, rows: np.ndarray) -> float:
     """Sum of squares of the sense over the mask ``rows``, less what it shares with the levels of the conditions."""
     labels = (
-        levels.labels_of_sweeps(points.Fz, points.sweep, levels.LOAD),
+        levels.labels_of_setting(points, "Fz"),
         levels.nearest_labels(points.gamma, levels.CAMBER),
         levels.nearest_labels(points.p, levels.PRESSURE),
         points.direction,

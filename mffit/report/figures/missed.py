@@ -7,9 +7,9 @@ import pandas as pd
 
 from mffit.constants import COVERAGE_FACTOR_95, STEPS_OF_LINE
 from mffit.linearised import LinearisedChannel
-from mffit.linearised.inputs import COLUMNS, LEVELS
+from mffit.linearised.inputs import LEVELS
 from mffit.prediction.conditions import UNITS
-from mffit.quantities import CHANNELS, CONDITIONS, column
+from mffit.quantities import CHANNELS, COLUMNS, CONDITIONS, column
 from mffit.report import style
 from mffit.report.build_view import BuildView
 from mffit.report.drawing.records import NOTHING, ZERO, Axis, Look, Note, Panel, Sheet, Trace, both_sides

@@ -197,8 +197,11 @@ def test_a_load_that_wanders_with_the_forces_of_its_sweeps_is_one_level():
     values = np.concatenate([np.tile(offset, 8), np.full(300, 1650.0)])
     sweep = np.concatenate([np.repeat(np.arange(8), len(offset)), np.full(300, 8)])
     assert levels.count(values, LOAD) > 2
-    assert len(np.unique(levels.labels_of_setting(values, sweep, LOAD))) == 2
-    assert len(np.unique(levels.labels_of_setting(np.repeat([0.1, 0.2], 5), np.zeros(10), CAMBER))) == 2
+    gamma = np.where(sweep > 4, 0.1, 0.2)
+    names = tuple(f"{k}.csv" for k in range(9))
+    points = make_points(0.0, gamma, values, p=250e3, V=6.0, phi_t=0.0, sweep=sweep, sweep_names=names)
+    assert len(np.unique(levels.labels_of_setting(points, "Fz"))) == 2
+    assert len(np.unique(levels.labels_of_setting(points, "gamma"))) == 2
 
 
 @pytest.mark.parametrize("n", [0, 1, 300])
