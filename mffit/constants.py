@@ -112,6 +112,11 @@ PREDICTION_FALSE_ALARM = Real(
     0.01, "-", "Probability that chance lets any of several candidates, readings or sweeps pass (Bonferroni)."
 )
 FEWEST_SWEEPS_TO_PREDICT = Count(8, "-", "With fewer sweeps a gain cannot be separated from chance.")
+CANDIDATES_FITTED = Count(
+    6,
+    "-",
+    "Best candidates to first order, effects or suspected sweeps, for which a fit is repeated in full.",
+)
 ODD_SWEEP_RATIO = Real(
     5.0, "-", "Rms misfit of a sweep over the median of all sweeps above which it is said to be the odd one."
 )

@@ -125,7 +125,7 @@ def _with_repair(named: AcceptedEffect, done: Explanation, u: Mapping[str, float
 
 def _remaining(found: Explanation, residual: np.ndarray) -> tuple[Region, ...]:
     """Regions that remain unexplained, the bump first."""
-    regions = where(found.problem.points, residual, found.scatter)[: constants.MOST_UNEXPLAINED_REGIONS]
+    regions = where(found.problem.points, residual, found.scatter)
     return (_bump_region(found.bump), *regions) if found.bump.found else regions
 
 

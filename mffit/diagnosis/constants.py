@@ -17,9 +17,6 @@ MISFIT_OF_ANOTHER_TYRE = Real(30.0, "-", "Misfit over noise above which naming a
 # What the data must vary for an effect to be visible
 VISIBLE_SPIN_CAMBER = Real(0.2, "rad", "Smallest range of camber that shows the spin by camber alone.")
 VISIBLE_TIME = Real(60.0, "s", "Shortest test that shows a drift.")
-DISTANCE_LIKE_TIME = Real(0.98, "-", "Correlation of distance and time above which wear looks like drift.")
-VISIBLE_RUNS = Count(3, "-", "Fewest runs that show a scatter of their zeros.")
-VISIBLE_SENSE_SHARE = Real(0.1, "-", "Smallest share of points that each sense of a sweep must have.")
 
 # Stated noise
 LEAST_STATED_NOISE_SHARE = Real(0.05, "-", "Stated uncertainties are raised to this share of their median.")
@@ -66,7 +63,6 @@ SCATTER_SETTLED = Real(
 )
 GENEROUS_EFFECT_SIZE = Real(3.0, "-", "Size of effects over the usual one while the scatter is estimated.")
 # Where the misfit is
-MOST_UNEXPLAINED_REGIONS = Count(4, "-", "Most regions of unexplained misfit that are listed.")
 MOST_REGION_BINS = Count(6, "-", "Most bins of one variable.")
 REGION_OVERLAP = Real(0.6, "-", "Share of common readings that makes a region repeat a more significant one.")
 REGION_LEVEL_WIDTH = Real(0.1, "-", "Width of a level over the range of the variable.")
@@ -95,7 +91,6 @@ TIE_EXCLUDED_BY_CHANCE = Real(
 UNIDENTIFIED_LOG_ODDS = Real(
     1.0, "-", "Added to the log prior odds of a coefficient at zero, else subtracted."
 )
-CANDIDATES_FITTED = Count(6, "-", "Best candidates of a step, to first order, that are fitted in full.")
 STRUCTURE_EVIDENCE = Real(
     8.0, "-", "Log evidence beyond the price of the search that a bump or structure needs."
 )

@@ -7,12 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from mffit.constants import VISIBLE_TEMPERATURE
+from mffit.constants import FEWEST, VISIBLE_TEMPERATURE
 from mffit.diagnosis import constants
 from mffit.diagnosis.notes import NotVisible
 from mffit.effects import OF_CHANNEL, Effect
+from mffit.fit.constants import STRONG_CORRELATION
 from mffit.points import Points, levels
-from mffit.points.clock import sense
+from mffit.points.clock import goes_both_ways, sense
 from mffit.rig import Simulation, distance_km
 from mffit.rig_errors import T_REF
 
@@ -38,8 +39,8 @@ def _angles(points: Points) -> tuple[tuple[np.ndarray, levels.LevelKind], ...]:
 
 
 def _both_senses(points: Points) -> bool:
-    way = sense(points)
-    return bool(min(np.sum(way > 0), np.sum(way < 0)) > constants.VISIBLE_SENSE_SHARE * len(points))
+    moving = [way for way in sense(points).tolist() if way]
+    return bool(moving) and goes_both_ways(np.array(moving))
 
 
 def _distance_is_not_time(points: Points) -> bool:
@@ -47,7 +48,7 @@ def _distance_is_not_time(points: Points) -> bool:
     if _spread(points.t) <= constants.VISIBLE_TIME or not _varies(points.V, levels.SPEED):
         return False
     likeness = float(np.corrcoef(points.t[known], distance_km(points)[known])[0, 1])
-    return likeness < constants.DISTANCE_LIKE_TIME
+    return likeness < STRONG_CORRELATION
 
 
 MET: dict[str, Callable[[Points], bool]] = {
@@ -63,7 +64,7 @@ MET: dict[str, Callable[[Points], bool]] = {
     "speeds": lambda p: _varies(p.V, levels.SPEED),
     "times": lambda p: _spread(p.t) > constants.VISIBLE_TIME,
     "distances": _distance_is_not_time,
-    "runs": lambda p: len(np.unique(p.file)) >= constants.VISIBLE_RUNS,
+    "runs": lambda p: len(np.unique(p.file)) >= FEWEST,
     "directions": lambda p: _spread(p.direction) > 0.0,
     "senses": _both_senses,
     "continuous": lambda p: bool(np.any(p.continuous)),

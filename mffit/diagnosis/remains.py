@@ -11,7 +11,13 @@ import numpy as np
 from scipy.special import chdtrc
 
 from mffit.as_json import estimates, keys
-from mffit.constants import MOST, NAMED_IN_SENTENCE, PREDICTION_FALSE_ALARM, WEAKEST_DIRECTION
+from mffit.constants import (
+    CANDIDATES_FITTED,
+    MOST,
+    NAMED_IN_SENTENCE,
+    PREDICTION_FALSE_ALARM,
+    WEAKEST_DIRECTION,
+)
 from mffit.diagnosis import constants
 from mffit.diagnosis.needs import possible
 from mffit.diagnosis.noise import Noise, Scatter
@@ -239,7 +245,7 @@ def best_effect(left: Left, effects: Sequence[Effect] = CATALOG) -> BestEffect |
     if not best_of:
         return None
     # All starts of one effect change the readings in nearly the same direction, so each effect counts as one trial.
-    likely = list(best_of.values())[: constants.CANDIDATES_FITTED]
+    likely = list(best_of.values())[:CANDIDATES_FITTED]
     found = [_weighed(left, step, len(best_of)) for step in likely]
     best = max(found, key=lambda one: (one.gain, -one.best.log_chance))
     near = [step for step in best_of.values() if step is not best.best and _as_good(step, best.best)]

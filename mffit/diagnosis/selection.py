@@ -6,8 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from mffit.constants import MOST
-from mffit.diagnosis import constants
+from mffit.constants import CANDIDATES_FITTED, MOST
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.priors import log_prior, price
 from mffit.diagnosis.problem import DiagnosisProblem
@@ -68,7 +67,7 @@ def contest(problem: DiagnosisProblem, before: Hypothesis, candidates: Sequence[
     gains = sets.gains(sets.of(before.effects))
     for rank, (effect, gain) in enumerate(gains):
         effects = (*before.effects, effect)
-        if rank < constants.CANDIDATES_FITTED and gain >= MOST * gains[0][1]:
+        if rank < CANDIDATES_FITTED and gain >= MOST * gains[0][1]:
             trials.append(problem.fit(effects, before.numbers))
         else:  # to first order
             trials.append(replace(before, effects=effects, log_evidence=before.log_evidence + gain))

@@ -7,7 +7,12 @@ HUBER_THRESHOLD = Real(4.0, "-", "Residuals beyond this many robust standard dev
 NOMINAL_NOISE_SHARE = Real(0.01, "-", "Standard uncertainty over the range of a channel that states none.")
 
 # What the points determine
-STRONG_CORRELATION = Real(0.95, "-", "Smallest absolute correlation of two coefficients that is stated.")
+STRONG_CORRELATION = Real(
+    0.95,
+    "-",
+    "Absolute correlation from which data hardly separate two things: that of coefficients is stated, and wear over a distance "
+    "looks like drift over time.",
+)
 
 # Prior knowledge of coefficients
 SIMILAR_TYRES_SPREAD = Real(0.3, "-", "Relative standard deviation of a coefficient among similar tyres.")
@@ -22,23 +27,7 @@ LEAST_SPREAD_DEFAULT = Real(
 CONDITIONS_OF_A_MISFIT = Count(
     500, "-", "Drawn conditions at which a base at other nominal conditions is compared with itself."
 )
-SAME_NOMINAL_CONDITION = Real(
-    0.01, "-", "Relative difference of nominal load or pressure up to which coefficients compare."
-)
-
 # Radii
-FREE_RADIUS_SPREAD = Real(
-    0.004,
-    "-",
-    "Standard deviation of a tyre's free radius over its declared one; published files have 0.9935 to 1.002.",
-)
-ROLLING_SLOPE_SPREAD = Real(
-    0.2,
-    "-",
-    "Standard deviation of DREFF and of FREFF: published files have 0.24 to 0.36 and 0.05 to 0.1, and a rolling radius that "
-    "falls by a third of the deflection 0 and 1/3.",
-)
-ROLLING_BEND_SPREAD = Real(4.0, "-", "Standard deviation of BREFF; published files have 7 to 9.")
 USUAL_MISFIT_OF_RADIUS = Real(
     0.0003,
     "m",

@@ -19,7 +19,7 @@ from mffit.fit.problem import FitProblem
 from mffit.fit.rig.rig_numbers import held_rig, rig_numbers, unseen_zeros
 from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.stages import BY_STAGE, ODD_TERMS, is_asymmetry
-from mffit.fit.wheel.vertical import OF_ROLLING_RADIUS
+from mffit.fit.wheel.vertical import OF_ROLLING_RADIUS, SPREADS
 from mffit.least_squares import EXACT, FreeNumber
 from mffit.measured import Measured
 from mffit.points import Points
@@ -100,7 +100,7 @@ class FitPlan:
         of freedom. The pull of this prior fades at values far from those of the published tyres.
         """
         spread, row = self.scatter.get(name, math.inf), BY_NAME[name]
-        if spread != row.tyres_spread:
+        if spread != row.tyres_spread or not row.tyres:
             return spread
         return spread * math.sqrt((row.tyres - 1 + ((value - self.expected[name]) / spread) ** 2) / row.tyres)
 
@@ -150,7 +150,7 @@ def fit_plan(
     absent = ODD_TERMS if config.tyre.side == "symmetric" else frozenset()
     held = {name: scatter[name] for row in cover for name in row.held if name not in absent}
     extra = [*OF_ROLLING_RADIUS] if config.rolling_radius else []
-    scatter = {**{n: known.u.get(n) or OF_ROLLING_RADIUS[n] for n in extra}, **scatter}
+    scatter = {**{n: known.u.get(n) or SPREADS[n] for n in extra}, **scatter}
     expected = {**start, **{name: prior.expected for name, prior in fleet.items()}}
     if measured.carried is not None and measured.carried.is_free:
         extra.append("PECP1")

@@ -9,6 +9,7 @@ from mffit.config import Config
 from mffit.errors import InputError
 from mffit.fit import constants
 from mffit.fit.stages import SMALL_ON_A_DISC
+from mffit.suspicion.constants import DIFFERENCE_OF_ANOTHER_TYRE
 from tir.parameters import BY_NAME
 
 CONVERTED = "converted"
@@ -81,7 +82,7 @@ def of_fleet(config: Config) -> dict[str, Prior]:
     own = {"FNOMIN": config.tyre.nominal_load, "NOMPRES": 1e3 * config.tyre.nominal_pressure}
     for name, value in own.items():
         theirs = nominal.get(name, 0.0)
-        if not abs(theirs - value) <= constants.SAME_NOMINAL_CONDITION * value:
+        if not abs(theirs - value) <= DIFFERENCE_OF_ANOTHER_TYRE * value:
             raise refused(
                 f"{path} holds priors of tyres with {name} {theirs:g}, but this tyre has {value:g}, and coefficients are "
                 f"relative to it; name the priors of tyres with the same {name}, or none"

@@ -9,7 +9,6 @@ from scipy.special import ndtri
 
 from mffit.config import Config
 from mffit.constants import NAMED_IN_SENTENCE, PREDICTION_FALSE_ALARM
-from mffit.fit import constants
 from mffit.fit.agreement import Agreement
 from mffit.fit.bands import BandBesideSweeps, Bands
 from mffit.fit.by_hand import NO_HAND, Hand
@@ -30,6 +29,7 @@ from mffit.quantities import CHANNELS
 from mffit.rig_errors import BESIDE, ZEROS, error_of, shown, unit_of, words_of
 from mffit.rounding import ascii_only, number, rounded, to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
+from mffit.suspicion.constants import DIFFERENCE_OF_ANOTHER_TYRE
 from tir.errors import listed
 from tir.parameters import BY_NAME
 
@@ -233,7 +233,7 @@ def nominal_pressure_sentences(files: Files) -> Iterator[str]:
     """A sentence if the nominal pressure, at which the coefficients hold, lies outside the tested pressures."""
     nominal = float(next(iter(files.by_use.values())).tyre["NOMPRES"])
     low, high = (files.tested[name] for name in ("PRESMIN", "PRESMAX"))
-    share = constants.SAME_NOMINAL_CONDITION
+    share = DIFFERENCE_OF_ANOTHER_TYRE
     if not (1.0 - share) * low <= nominal <= (1.0 + share) * high:
         tested = f"{low / 1e3:.1f} to {high / 1e3:.1f} kPa were"
         if single_pressure(files.tested):

@@ -1,6 +1,6 @@
 """Limits of the suspicions, and what the checks behind them need."""
 
-from tir.constant import Count, Real, Series
+from tir.constant import Real, Series
 
 # Slopes and forces whose sign all tyres share
 SIDESLIP_OF_SLOPES = Real(
@@ -70,7 +70,6 @@ LARGEST_ERROR_OF_FORMULA = Real(
     "Reading over the prediction of a formula, fitted at other loads, that a sound tyre can have: a trail that does not depend "
     "on the load is 1.3 times too long halfway to the triple load, and 3 halfway to ten times the load.",
 )
-MOST_SUSPECTS = Count(6, "-", "Most suspected sweeps, worst first, without which the fit is repeated.")
 
 # The fitted model
 DISTRUSTED_MISFIT = Real(1.5, "-", "Misfit over stated noise above which a file is not trusted.")

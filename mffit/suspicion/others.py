@@ -16,7 +16,7 @@ import numpy as np
 from scipy.special import chdtrc, ndtr
 
 from mffit.as_json import keys
-from mffit.constants import CERTAIN_SIGMA, FEWEST, MOST, PREDICTION_FALSE_ALARM
+from mffit.constants import CANDIDATES_FITTED, CERTAIN_SIGMA, FEWEST, MOST, PREDICTION_FALSE_ALARM
 from mffit.errors import InputError
 from mffit.points import Points
 from mffit.points.constants import UNLIKE_SHARE
@@ -223,7 +223,7 @@ def _suspects(campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str,
                     worst[k] = max(worst.get(k, 0.0), e.ratio / usual)
         worst |= {k: math.inf for k, g in enumerate(found) if campaign.mostly_rejected(name, g.index)}
     in_order = sorted(worst, key=lambda k: (not found[k].whole, -worst[k]))
-    return [found[k] for k in in_order[: constants.MOST_SUSPECTS]]
+    return [found[k] for k in in_order[:CANDIDATES_FITTED]]
 
 
 def without_worst(sizes: np.ndarray) -> np.ndarray:

@@ -44,19 +44,15 @@ BOUNDS = {
     "Q_FCY": (0.0, 1.0),
     "Q_CAM3": (-8.0, 8.0),
 }
-OF_ROLLING_RADIUS = {
-    "Q_RE0": float(constants.FREE_RADIUS_SPREAD),
-    "DREFF": float(constants.ROLLING_SLOPE_SPREAD),
-    "FREFF": float(constants.ROLLING_SLOPE_SPREAD),
-    "BREFF": float(constants.ROLLING_BEND_SPREAD),
-}
-"""Coefficients of the rolling radius and their standard deviations around known values: a few radii under load do not separate
-the free radius from the slopes over load."""
-SPREADS = OF_ROLLING_RADIUS | {
+OF_ROLLING_RADIUS = ("Q_RE0", "DREFF", "FREFF", "BREFF")
+"""Coefficients of the rolling radius."""
+SPREADS = {
     row.name: row.tyres_spread for row in TABLE if row.section == "VERTICAL" and row.tyres_spread is not None
 }
 """Standard deviation among tyres of coefficients that few test plans determine: published files have Q_V1 of 0.0005 to 0.0008,
-Q_V2 of 0.02 to 0.05, Q_FCX of -0.13 to 0.11, Q_FCY of 0.12 to 0.23, and Q_CAM3 of 0 to 0.5."""
+Q_V2 of 0.02 to 0.05, Q_FCX of -0.13 to 0.11, Q_FCY of 0.12 to 0.23, and Q_CAM3 of 0 to 0.5; Q_RE0 of 0.9935 to 1.002, DREFF of
+0.24 to 0.36, FREFF of 0.05 to 0.1 and BREFF of 7 to 9. A rolling radius that falls by a third of the deflection has DREFF 0 and
+FREFF 1/3. A few radii under load do not separate the free radius from these slopes."""
 OVER_SPEED = ("Q_V1", "Q_V2")
 """Coefficients that several speeds determine; with a single speed they are held and add to the uncertainties."""
 EVEN = ("Q_FCX", "Q_FCY")

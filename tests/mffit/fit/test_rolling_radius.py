@@ -11,7 +11,7 @@ from mffit.config import loading
 from mffit.fit.beginning import sketch
 from mffit.fit.known import estimates
 from mffit.fit.wheel.rolling import effective_radius
-from mffit.fit.wheel.vertical import OF_ROLLING_RADIUS, vertical_coefficients
+from mffit.fit.wheel.vertical import OF_ROLLING_RADIUS, SPREADS, vertical_coefficients
 from mffit.numbers import Numbers
 from mffit.pipeline.inputs import read_points
 from mffit.pipeline.measuring import measure
@@ -96,7 +96,7 @@ def test_three_radii_on_a_line_leave_the_free_radius(track, tmp_path):
     assert abs(fit.tyre["Q_RE0"] - 1.0) < 2e-3
     Q_RE0 = fit.coefficients["Q_RE0"]
     assert Q_RE0.status == "regularised"
-    assert Q_RE0.stderr == pytest.approx(OF_ROLLING_RADIUS["Q_RE0"], rel=0.2)
+    assert Q_RE0.stderr == pytest.approx(SPREADS["Q_RE0"], rel=0.2)
     assert not any(fit.coefficients[name].at_bound for name in OF_ROLLING_RADIUS)
 
 
