@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config, axis_signs
-from mffit.constants import MOST, PREDICTION_FALSE_ALARM
+from mffit.constants import FALSE_ALARM, MOST, PREDICTION_FALSE_ALARM
 from mffit.diagnosis import constants, wording
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.explanation import Explanation
@@ -39,10 +39,16 @@ from tir.mode import with_turn_slip
 from tir.parameters import BY_NAME
 
 
-def named_effects(config: Config, found: Explanation, given: DiagnosisProblem) -> tuple[AcceptedEffect, ...]:
-    """The records of all accepted effects, each judged together with the others."""
+def named_effects(
+    config: Config, found: Explanation, given: DiagnosisProblem, alternatives: Mapping[str, float]
+) -> tuple[AcceptedEffect, ...]:
+    """The records of the accepted effects, each judged together with the others.
+
+    One that is practically excluded together with all that are tied with it is not even suspected.
+    """
     u = _stated_u(found, found)
-    return tuple(_found(config, found, effect, u, given) for effect in found.chosen.effects)
+    every = (_found(config, found, effect, u, given) for effect in found.chosen.effects)
+    return tuple(one for one in every if one.confidence_of_tie(alternatives) > PREDICTION_FALSE_ALARM)
 
 
 def answered(
@@ -84,7 +90,7 @@ def answer(
         after=after,
         gap_before=gap_before,
         gap_after=gap(given.measured - after, scatter),
-        gap_named=gap(given.measured - explained, scatter),
+        gap_named=gap(given.measured - (explained if named else after), scatter),
         validation=repair.validation,
         where=where(given.points, given.measured - before, scatter),
         effects=tuple(_with_repair(one, done, u) for one in named),
@@ -254,7 +260,7 @@ def not_accepted(found: Explanation) -> dict[str, float]:
         for trial in one.trials:
             name = trial.effects[-1].id
             explains = trial.log_evidence > one.before.log_evidence
-            if name not in chosen.ids and explains and weights[name] > constants.LEAST_ALTERNATIVE:
+            if name not in chosen.ids and explains and weights[name] > FALSE_ALARM:
                 out[name] = max(weights[name], out.get(name, 0.0))
     return out
 

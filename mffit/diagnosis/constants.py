@@ -17,6 +17,7 @@ MISFIT_OF_ANOTHER_TYRE = Real(30.0, "-", "Misfit over noise above which naming a
 # What the data must vary for an effect to be visible
 VISIBLE_SPIN_CAMBER = Real(0.2, "rad", "Smallest range of camber that shows the spin by camber alone.")
 VISIBLE_TIME = Real(60.0, "s", "Shortest test that shows a drift.")
+VISIBLE_SENSE_SHARE = Real(0.1, "-", "Smallest share of points that each sense of a sweep must have.")
 
 # Stated noise
 LEAST_STATED_NOISE_SHARE = Real(0.05, "-", "Stated uncertainties are raised to this share of their median.")
@@ -139,7 +140,6 @@ KNOWN_BESIDE_UNKNOWN = Real(
     "Prior odds that a named effect acts as well where misfit proves a cause that the library lacks.",
     "diagnosis_study.py --outside --seed 100 and --mixed --seed 500: a third of them right, docs/evidence-diagnosis.md",
 )
-LEAST_ALTERNATIVE = Real(1e-4, "-", "Weight below which an effect is not listed as an alternative.")
 
 # Validation
 PARTS_OF_A_RUN = Count(

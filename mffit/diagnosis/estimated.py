@@ -8,8 +8,9 @@ model error and the errors of the rig are drawn anew.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,12 +22,12 @@ from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.search import Search
 from mffit.fit.stages import is_asymmetry
 from mffit.fit.told import Told, numbers_told
+from mffit.linearised.components import CERTAIN_EVIDENCE
 from mffit.linearised.gaussian import Informed
 from mffit.numbers import Numbers
 from mffit.points.like import curves
 from mffit.rig_errors import error_of
 from mffit.scatter import rms
-from tir.parameters import BY_NAME
 
 
 def estimated(found: Explanation, search: Search) -> Explanation:
@@ -51,20 +52,47 @@ def estimated(found: Explanation, search: Search) -> Explanation:
 def _freed(found: Explanation, plain: DiagnosisProblem, beside: Numbers, known: Sequence[str]) -> Numbers:
     """The numbers ``beside`` the effects that are estimated with them; all others stay as given, with their uncertainty.
 
-    Calibrations look like the tyre and stay. Zeros, and on a disc asymmetries, would take up a model error, as in a build; beside
-    one, coefficients move only with effects that free some of them, or if more is left than the file is known to miss. Without
-    model error and effects the evidence decides. ``known`` are names of the numbers that may be wrong in the given model.
+    Calibrations look like the tyre and stay, and on a flat track the zeros, which the coefficients take up. Beside a model
+    error, on a disc the asymmetries and all else move if the evidence tells them from it, as in a build. Without model error
+    and effects the evidence decides. ``known`` are names of the numbers that may be wrong in the given model.
     """
-    points, missed = plain.points, any(found.problem.amplitude.values())
+    points = plain.points
     rig = {n: e for n in beside.names if n not in known and (e := error_of(n)) is not None}
-    free = beside.given({n for n, e in rig.items() if missed or e.is_gain or not points.curved})
-    if not missed:
-        columns = columns_of(free, plain.start, points, plain.channels)
-        told = Informed.of_rows(plain.noise.whiten(columns), plain.whitened(plain.start))
-        return free if found.chosen.effects or told.gain > 0.0 else EXACT
-    if not found.smooth.found and not any(n in BY_NAME for e in found.chosen.effects for n in e.parameters):
-        return EXACT
-    return free.given({n for n in free.names if is_asymmetry(n)}) if points.curved else free
+    free = beside.given({n for n, e in rig.items() if e.is_gain or not points.curved})
+    evidence = _Evidence.of(found, plain.uncertain(found.refined, free))
+    if not any(found.problem.amplitude.values()):
+        return free if found.chosen.effects or evidence.of_names(free.names) > 0.0 else EXACT
+    odd = {n for n in free.names if points.curved and is_asymmetry(n)}
+    groups = odd, {*free.names} - odd
+    return free.given({n for g in groups if evidence.of_names(g) <= CERTAIN_EVIDENCE for n in g})
+
+
+class _Evidence(NamedTuple):
+    """The readings' evidence for numbers within their priors, beside the model error of an explanation."""
+
+    known: Numbers  #: all that may move, the numbers of the effects included
+    white: (
+        np.ndarray
+    )  #: (m, 1 + k + s) residual at the prior means, derivatives by the numbers, and model error, whitened
+
+    @classmethod
+    def of(cls, found: Explanation, known: Numbers) -> _Evidence:
+        """The evidence at the numbers of an explanation."""
+        noise, points, problem = found.independent, found.problem.points, found.problem
+        slopes = slopes_of(found.refined.state, points, known.names, noise.channels)
+        left = noise.measured(points) - found.refined.state.predict(points, noise.channels)
+        at_means = np.nan_to_num(left) + slopes @ (known.values - known.expected)
+        missed = problem.structure.columns(problem.amplitude)
+        return cls(known, noise.whiten(np.column_stack([at_means, slopes, missed])))
+
+    def of_names(self, names: Collection[str]) -> float:
+        """Gain of log evidence by the named numbers."""
+        return self._gain(self.known) - self._gain(self.known.given(names))
+
+    def _gain(self, numbers: Numbers) -> float:
+        k = len(self.known.names)
+        own = self.white[:, 1 : 1 + k][:, self.known.rows(numbers.names)] @ numbers.root
+        return Informed.of_rows(np.hstack([own, self.white[:, 1 + k :]]), self.white[:, 0]).gain
 
 
 def _strained(plain: DiagnosisProblem, chosen: Hypothesis, search: Search) -> bool:

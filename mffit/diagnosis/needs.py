@@ -13,7 +13,7 @@ from mffit.diagnosis.notes import NotVisible
 from mffit.effects import OF_CHANNEL, Effect
 from mffit.fit.constants import STRONG_CORRELATION
 from mffit.points import Points, levels
-from mffit.points.clock import goes_both_ways, sense
+from mffit.points.clock import sense
 from mffit.rig import Simulation, distance_km
 from mffit.rig_errors import T_REF
 
@@ -39,8 +39,8 @@ def _angles(points: Points) -> tuple[tuple[np.ndarray, levels.LevelKind], ...]:
 
 
 def _both_senses(points: Points) -> bool:
-    moving = [way for way in sense(points).tolist() if way]
-    return bool(moving) and goes_both_ways(np.array(moving))
+    way = sense(points)
+    return bool(min(np.sum(way > 0), np.sum(way < 0)) > constants.VISIBLE_SENSE_SHARE * len(points))
 
 
 def _distance_is_not_time(points: Points) -> bool:

@@ -74,7 +74,7 @@ def repair(confirmed: Confirmed, validation: Validation, search: Search) -> Repa
         for one in named
         if search.asked.repair_all or one.confidence_of_tie(confirmed.alternatives) >= MOST
     ]
-    if len(likely) < len(named):
+    if len(likely) < len(found.chosen.effects):
         found, validation, refused = only(likely)
     of_tyre = tuple(effect for effect in found.chosen.effects if effect.kind == "tyre")
     if not of_tyre or validation.gain_of_file > 0.0:

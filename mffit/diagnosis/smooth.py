@@ -125,14 +125,14 @@ class SmoothStructure(ReadOnlyArrays):
 
     def noise(self, amplitude: Mapping[str, float]) -> Noise:
         """The noise with structure of these amplitudes by channel, one standard deviation each."""
-        return self.scatter.sharing(self.scatter.shared, self._columns(amplitude))
+        return self.scatter.sharing(self.scatter.shared, self.columns(amplitude))
 
     def estimated(self, amplitude: Mapping[str, float], residual: np.ndarray) -> np.ndarray:
         """The structure (c n,) of these amplitudes that a residual (c n,) shows."""
-        noise, columns = self.scatter.alone(), self._columns(amplitude)
+        noise, columns = self.scatter.alone(), self.columns(amplitude)
         return np.asarray(columns @ Informed.of_rows(noise.whiten(columns), noise.whiten(residual)).mean)
 
-    def _columns(self, amplitude: Mapping[str, float]) -> np.ndarray:
+    def columns(self, amplitude: Mapping[str, float]) -> np.ndarray:
         """Changes (c n, k) by one standard deviation of structure of these amplitudes by channel."""
         channels = self.scatter.channels
         size = np.repeat([amplitude.get(c, 0.0) for c in channels], self.basis.shape[1] // len(channels))

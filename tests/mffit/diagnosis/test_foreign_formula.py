@@ -5,6 +5,7 @@ The brush of ``brush.py`` and the tyre of four lines of ``disc_project.py`` are 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import brush
@@ -22,14 +23,16 @@ from mffit.diagnosis.rest import Answer
 from tir import Tyre
 
 
-def toy(folder: Path, seed: int, *, turn_slip: bool = True) -> Path:
-    """The small campaign on a disc, with more noise [N], [Nm] of a draw of its own."""
+def toy(folder: Path, seed: int, *, turn_slip: bool = True, zeros: Mapping[str, float] | None = None) -> Path:
+    """The small campaign on a disc, with more noise [N], [Nm] of a draw of its own, and ``zeros`` of the rig by column."""
     project, rng = disc_project(folder), np.random.default_rng(seed)
     project.config["spin"] = {"exact": "turn-slip"}
     project.config["model"] = {"turn_slip": turn_slip}
     for table in project.tables.values():
         table["Fy_N"] += 2.5 * rng.standard_normal(len(table))
         table["Mz_Nm"] += 0.25 * rng.standard_normal(len(table))
+        for column, zero in (zeros or {}).items():
+            table[column] += zero
     return project.write()
 
 
@@ -89,6 +92,19 @@ def test_what_a_build_left_of_its_own_readings_is_not_missing_in_others(built_br
     assert found.trusted
     (note,) = [note for note in found.notes if isinstance(note, LeftByBuild)]
     assert 6.0 < note.left["Fy"] < 15.0
+
+
+def test_zeros_of_the_rig_are_no_gap_beside_what_the_build_left(built_toy, tmp_path):
+    """They lie within their declaration: nothing is missing, and the misfit is that of readings without them."""
+    zeros = {"Fy_N": 8.0, "alpha_deg": 0.1, "gamma_deg": 0.4}
+    found = mffit.diagnose(toy(tmp_path, 2, zeros=zeros), built_toy)
+    assert found.answer is Answer.NOTHING
+    assert found.gap_before.rms("Fy") > 30.0
+    assert found.gap_after.rms("Fy") < 16.0
+    for name, column in {"F0_N": "Fy_N", "alpha_0_deg": "alpha_deg", "gamma_0_deg": "gamma_deg"}.items():
+        value, u = found.coefficients[name]
+        true = zeros[column] if name == "F0_N" else -zeros[column]
+        assert abs(value - true) < 2.0 * u
 
 
 def test_a_change_of_the_tyre_is_repaired_beside_what_its_build_left(built_brush, tmp_path):

@@ -16,6 +16,7 @@ from mffit.cli import main
 from mffit.config import RigTable
 from mffit.diagnosis import Asked, diagnose
 from mffit.diagnosis import repair as repairing
+from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import EXACT
 from mffit.diagnosis.notes import FileKept
 from mffit.diagnosis.rest import Answer
@@ -57,14 +58,14 @@ def with_noise(points, Fy, Mz, rng):
     return points.replace(Fy=Fy + U_FY * noise[0], Mz=Mz + U_MZ * noise[1])
 
 
-def of_a_leaning_cell(**settings):
+def of_a_leaning_cell(*effects, **settings):
     """The diagnosis of a crosstalk, which conicity explains as well."""
     rng = np.random.default_rng(5)
     points = campaign(rng)
     points = with_noise(
         points, *Simulation.of(TYRE, NO_FAULTS.replace(crosstalk=0.005)).readings(points).values(), rng
     )
-    return diagnose(points, TYRE, CONFIG, Asked(effects=(CROSSTALK, CONICITY), **settings))
+    return diagnose(points, TYRE, CONFIG, Asked(effects=effects or (CROSSTALK, CONICITY), **settings))
 
 
 def test_a_suspicion_is_listed_and_not_repaired(tmp_path):
@@ -85,6 +86,13 @@ def test_a_suspicion_is_listed_and_not_repaired(tmp_path):
     assert found.headline.startswith("These data cannot tell what is missing; the best explanation is")
     assert "suspected and not repaired" in text.diagnosis_summary(found)
     assert "suspected, not repaired" in (tmp_path / "diagnosis.html").read_text()
+
+
+def test_an_effect_that_is_practically_excluded_is_not_suspected(monkeypatch):
+    monkeypatch.setattr(Explanation, "confidence", lambda *_: 0.0)
+    found = of_a_leaning_cell(CROSSTALK)
+    assert not found.effects
+    assert found.gap_after == found.gap_named == found.gap_before
 
 
 def test_all_suspicions_are_repaired_on_request():
