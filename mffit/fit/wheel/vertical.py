@@ -61,8 +61,6 @@ USUAL = 0.1
 
 CONTOUR = {"Q_CAM1": 1.0}
 """Switches on the deflection of a flat tread by camber: only the ratio of Q_CAM1 to Q_CAM2 acts, so its size is arbitrary."""
-WEIGHTINGS = 3
-"""Fits with the misfit of the one before as uncertainty; in the first, the priors have too much weight."""
 ROUNDING = 1e-9
 """Lower bound of the misfit of a radius, over the usual misfit."""
 SHOWN = {
@@ -320,9 +318,12 @@ def _fitted(
     parts = [np.flatnonzero(at.part == k) for k in np.unique(at.part)]
     end = fitted(u := float(constants.USUAL_MISFIT_OF_RADIUS), values)
     covariance = end.covariance
-    if len(parts) > len(names):  # refit with the misfit as uncertainty, which sets the weight of the priors
-        for _ in range(WEIGHTINGS):
-            end = fitted(u := u * _alike(end, parts), {**values, **end.values})
+    if len(parts) > len(names):  # refit until the uncertainty, which sets the weight of the priors, is the misfit
+        for _ in range(constants.REFIT_STEPS):
+            wider = _alike(end, parts)
+            end = fitted(u := u * wider, {**values, **end.values})
+            if abs(wider - 1.0) < constants.STAGE_TOLERANCE:
+                break
         covariance = _of_units(end, parts)
     values = {**values, **end.values}
     x = np.array([float(values[name]) for name in before])
