@@ -17,8 +17,7 @@ def by_condition(points: Points) -> Points:
     held = [(getattr(points, name), kind) for name, kind in levels.KINDS.items() if name != "alpha"]
     sweep = np.zeros(len(points), dtype=int)
     names: list[str] = []
-    for k in np.unique(points.sweep):
-        rows = np.flatnonzero(points.sweep == k)
+    for k, rows in points.rows_of_sweeps.items():
         labels = np.column_stack([_held(values[rows], quantity) for values, quantity in held])
         _, part = np.unique(labels, axis=0, return_inverse=True)
         part = part.ravel()

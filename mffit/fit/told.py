@@ -58,8 +58,7 @@ def told_by_curves(problem: FitProblem, left: LinearisedFit, names: Sequence[str
             residual=channel.model.residual * channel.unit * weight,
         )
         of = curve[channel.rows]
-        for sweep in np.unique(part.sweep):
-            run = np.flatnonzero(part.sweep == sweep)
+        for run in part.rows_of_sweeps.values():
             by_own = seen.by_own(run)
             for one in np.unique(of[run]).tolist():
                 told = seen.told(run[of[run] == one], channel.stride, by_own)

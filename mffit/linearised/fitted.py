@@ -165,7 +165,7 @@ def _channel(
     seen = sight.at(rows, name)
     part = seen.points
     unit = unit_of(part, name, sigma[rows])
-    groups = [np.flatnonzero(part.sweep == k) for k in np.unique(part.sweep)]
+    groups = [*part.rows_of_sweeps.values()]
     own = own_columns(model[rows], seen.along)
     if len(groups) == 1:  # random effects are not identifiable, and would absorb the model error
         own = np.zeros_like(own)

@@ -111,7 +111,7 @@ def inputs_of(points: Points) -> tuple[Input, ...]:
         if steps < 1:
             continue
         most = int(constants.DIVISIONS_OF_A_SWEEP)
-        widest = max(_width(values[rows]) for rows in _runs(points))
+        widest = max(_width(values[rows]) for rows in points.rows_of_sweeps.values())
         is_swept = widest > constants.STEPS_OF_A_SWEEP * np.ptp(values) / steps
         found.append(_input(name, values, most if is_swept else min(steps, most)))
     for name in ALSO:
@@ -143,10 +143,6 @@ def _input(name: str, values: np.ndarray, steps: int, averaged: tuple[float, ...
     return Input(name, low, high, (high - low) / steps, averaged)
 
 
-def _runs(points: Points) -> list[np.ndarray]:
-    return [np.flatnonzero(points.sweep == k) for k in np.unique(points.sweep)]
-
-
 def _width(values: np.ndarray) -> float:
     """Width of the range through which a run moves a condition, without extreme values."""
     in_order = np.sort(values)  # np.percentile takes ten times as long for few values
@@ -158,8 +154,7 @@ def swept_of(points: Points, inputs: Sequence[Input]) -> dict[int, str]:
     """By index of a sweep, the condition that it moves most, relative to the tested range."""
     out = {}
     steered = [one for one in inputs if one.name in LEVELS and one.name != "p"]
-    for k in np.unique(points.sweep).tolist():
-        rows = points.sweep == k
+    for k, rows in points.rows_of_sweeps.items():
         moved = {one.name: np.ptp(getattr(points, one.name)[rows]) / one.width for one in steered}
         out[k] = max(moved, key=lambda name: moved[name], default="alpha")
     return out
@@ -191,7 +186,7 @@ def settings_of(points: Points, inputs: tuple[Input, ...]) -> np.ndarray:
             continue
         out[:, i] = getattr(points, one.name)
         if one.name != "T":
-            for rows in _runs(points):
+            for rows in points.rows_of_sweeps.values():
                 if _width(out[rows, i]) < one.spacing:
                     out[rows, i] = out[rows, i].mean()
     return out

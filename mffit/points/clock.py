@@ -54,8 +54,7 @@ def rolled_distance(time: np.ndarray, V: np.ndarray) -> np.ndarray:
 def sense(points: Points) -> np.ndarray:
     """Sense (n,) of the sideslip's motion along its sweep: 1 up, -1 down, 0 held."""
     out = np.zeros(len(points))
-    for k in np.unique(points.sweep):
-        rows = np.flatnonzero(points.sweep == k)
+    for rows in points.rows_of_sweeps.values():
         if len(rows) > 1:
             moving = np.gradient(points.alpha[rows])
             out[rows] = np.where(np.abs(moving) > SAME_SIDESLIP.rad, np.sign(moving), 0.0)

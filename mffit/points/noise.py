@@ -46,7 +46,7 @@ def neighbour_noise(points: Points, values: np.ndarray) -> float:
 
     NaN if all sweeps are too short.
     """
-    sweeps = [values[(points.sweep == k) & np.isfinite(values)] for k in np.unique(points.sweep)]
+    sweeps = [own[np.isfinite(own)] for own in (values[rows] for rows in points.rows_of_sweeps.values())]
     # White noise of variance 1 has third differences of variance 1 + 9 + 9 + 1.
     differences = [np.diff(x, 3) / np.sqrt(20.0) for x in sweeps if len(x) >= constants.FEWEST_POINTS]
     return robust(np.concatenate(differences)) if differences else float("nan")

@@ -137,8 +137,7 @@ class _Labelled:
         keys = _keys(setting, points)
         swept: dict[int, MeanReadings] = {}
         labels: dict[int, int] = {}
-        for k in np.unique(points.sweep).tolist():
-            own = np.flatnonzero(points.sweep == k)
+        for k, own in points.rows_of_sweeps.items():
             if len(np.unique(label[own])) == 1:  # a sweep over this setting has no label of it
                 swept[k], labels[k] = mean_readings(points, own, keys, u), int(label[own[0]])
         pairs = {

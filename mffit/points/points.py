@@ -103,6 +103,11 @@ class Points(MeasuredRows):
         return np.where(turning, (1.0 + self.kappa) * self.V / np.where(turning, turns, 1.0), np.nan)
 
     @property
+    def rows_of_sweeps(self) -> dict[int, np.ndarray]:
+        """Row indices (m,) of every sweep that has points, by its index."""
+        return {k: np.flatnonzero(self.sweep == k) for k in np.unique(self.sweep).tolist()}
+
+    @property
     def used_setups(self) -> tuple[str, ...]:
         """Names of the set-ups that have points, in the order of ``setups``."""
         return tuple(self.setups[k] for k in np.unique(self.setup))

@@ -31,8 +31,7 @@ class History:
     def along_sweep(self) -> np.ndarray:
         """Position (n,) of every point in its sweep: 0 for the first, 1 for the last."""
         out = np.zeros(len(self.points))
-        for k in np.unique(self.points.sweep):
-            rows = np.flatnonzero(self.points.sweep == k)
+        for rows in self.points.rows_of_sweeps.values():
             out[rows] = np.linspace(0.0, 1.0, len(rows))
         return out
 

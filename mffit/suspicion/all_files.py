@@ -37,8 +37,7 @@ def copied_sweep(points: Points, config: Config) -> Iterator[Facts]:
     """Readings of a sweep that are all in another sweep; its points would count twice."""
     readings = readings_of(points)
     seen: dict[bytes, int] = {}
-    for k in np.unique(points.sweep):
-        rows = np.flatnonzero(points.sweep == k)
+    for k, rows in points.rows_of_sweeps.items():
         if len(rows) < FEWEST or np.ptp(points.Fy[rows]) == 0.0:
             continue
         own = readings[rows]
@@ -46,7 +45,7 @@ def copied_sweep(points: Points, config: Config) -> Iterator[Facts]:
         if key in seen:
             first = points.sweep_names[seen[key]]
             yield {"file": points.files[points.file[rows[0]]], "first": first}
-        seen[key] = int(k)
+        seen[key] = k
 
 
 @rule(

@@ -36,8 +36,7 @@ def readings_of(points: Points) -> np.ndarray:
 
 
 def _sweeps(points: Points) -> Iterator[Group]:
-    for k in np.unique(points.sweep):
-        index = np.flatnonzero(points.sweep == k)
+    for k, index in points.rows_of_sweeps.items():
         file = points.files[points.file[index[0]]]
         yield Group(name=points.sweep_names[k], file=file, index=index, whole=True)
 

@@ -291,7 +291,7 @@ SCATTER = (
 def _odd(fit: FinishedFit, channel: str) -> dict[int, OverNoise]:
     """Misfit over the scatter of neighbouring readings, of sweeps without stated noise and with far more than median misfit."""
     missed = np.where(fit.used[channel], fit.model[channel] - fit.points.channel(channel), np.nan)
-    own = {k: rms(missed[fit.points.sweep == k]) for k in np.unique(fit.points.sweep).tolist()}
+    own = {k: rms(missed[rows]) for k, rows in fit.points.rows_of_sweeps.items()}
     odd = ODD_SWEEP_RATIO * finite_median(np.array(list(own.values())))
     return {k: fit.over_scatter(channel, fit.points.sweep == k) for k, size in own.items() if size > odd}
 
@@ -581,8 +581,8 @@ def _cause(fit: FinishedFit) -> str:
 
 def _by_sweep(fit: FinishedFit, channel: str) -> dict[int, OverNoise]:
     """By sweep, misfit over the stated noise; without sweeps that state none."""
-    rows = {k: fit.misfit(channel, fit.points.sweep == k) for k in np.unique(fit.points.sweep).tolist()}
-    return {k: seen for k, seen in rows.items() if seen.n}
+    found = {k: fit.misfit(channel, fit.points.sweep == k) for k in fit.points.rows_of_sweeps}
+    return {k: seen for k, seen in found.items() if seen.n}
 
 
 def _carriers(fit: FinishedFit, channel: str) -> str:

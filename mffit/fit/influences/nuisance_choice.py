@@ -256,8 +256,7 @@ def halves_of_runs(points: Points) -> np.ndarray:
     The two halves share the tyre's state but not their angles, so an improvement cannot come from details of one half's curve.
     """
     out = np.empty(len(points), dtype=int)
-    for k, run in enumerate(np.unique(points.sweep)):
-        rows = points.sweep == run
+    for k, rows in enumerate(points.rows_of_sweeps.values()):
         angle = max((points.alpha[rows], points.gamma[rows]), key=np.ptp)
         out[rows] = 2 * k + (angle > 0.5 * (angle.min() + angle.max()))
     return out
