@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config, axis_signs
-from mffit.constants import FALSE_ALARM, MOST, PREDICTION_FALSE_ALARM
+from mffit.constants import FALSE_ALARM, MOST, NAMED_IN_SENTENCE, PREDICTION_FALSE_ALARM
 from mffit.diagnosis import constants, wording
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.explanation import Explanation
@@ -131,7 +131,7 @@ def _with_repair(named: AcceptedEffect, done: Explanation, u: Mapping[str, float
 
 def _remaining(found: Explanation, residual: np.ndarray) -> tuple[Region, ...]:
     """Regions that remain unexplained, the bump first."""
-    regions = where(found.problem.points, residual, found.scatter)
+    regions = where(found.problem.points, residual, found.scatter)[:NAMED_IN_SENTENCE]
     return (_bump_region(found.bump), *regions) if found.bump.found else regions
 
 
