@@ -1,6 +1,6 @@
 """Points under like conditions: curves, and mean side forces, by which sweeps and files are compared."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -53,20 +53,28 @@ def _held(points: Points, settings: Sequence[str]) -> np.ndarray:
     return np.column_stack([*labels, points.direction, points.mount, path])
 
 
-def curves(points: Points) -> np.ndarray:
-    """Index (n,) of the curve of each point: points of one sweep, which may be a whole file, that differ in one quantity only.
+def series(points: Points, *, signed: bool) -> Iterator[tuple[str, np.ndarray]]:
+    """What every curve goes over, and its rows (m,): points of one sweep, or of a whole file, that differ in one quantity only.
 
     It is that of sideslip, camber and longitudinal slip with the most levels at a load, pressure and path; the others are held.
-    A curve and its mirror image are one.
+    A curve and its mirror image are one, unless they are ``signed``.
     """
-    out, known = np.zeros(len(points), dtype=int), 0
     for rows in levels.rows_of_equal(np.column_stack([points.sweep, _held(points, HELD)])):
-        found = [
-            levels.nearest_labels(np.abs(getattr(points, name)[rows]), levels.KINDS[name]) for name in VARIED
-        ]
-        found.pop(int(np.argmax([len(np.unique(own)) for own in found])))
-        for own in levels.rows_of_equal(np.column_stack(found)):
-            out[rows[own]], known = known, known + 1
+        values = {name: getattr(points, name)[rows] for name in VARIED}
+        found = {
+            name: levels.nearest_labels(x if signed else np.abs(x), levels.KINDS[name])
+            for name, x in values.items()
+        }
+        over = max(found, key=lambda name: len(np.unique(found[name])))
+        held = np.column_stack([own for name, own in found.items() if name != over])
+        yield from ((over, rows[own]) for own in levels.rows_of_equal(held))
+
+
+def curves(points: Points) -> np.ndarray:
+    """Index (n,) of the curve of each point, as in :func:`series`; a curve and its mirror image are one."""
+    out = np.zeros(len(points), dtype=int)
+    for k, (_, rows) in enumerate(series(points, signed=False)):
+        out[rows] = k
     return out
 
 

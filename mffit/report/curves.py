@@ -7,7 +7,7 @@ import numpy as np
 
 from mffit.constants import FEWEST, STEPS_OF_LINE
 from mffit.parts.constants import SAME_CAMBER
-from mffit.points import Points, levels
+from mffit.points import Points, levels, like
 from mffit.quantities import CONDITIONS, SIDEWAYS
 from mffit.rig import Simulation
 from tir.frozen import ReadOnlyArrays
@@ -78,62 +78,40 @@ def curves(points: Points) -> list[Curve]:
 
     Series over an angle are of the freely rolling wheel.
     """
-    alpha, gamma = (shown_values(points, name) for name in ("alpha", "gamma"))
-    slipping = np.isin(points.sweep, points.sweep[~points.free_rolling])
-    held = {
-        "alpha": np.degrees(levels.level_values(points.gamma, levels.CAMBER)),
-        "gamma": np.degrees(levels.level_values(points.alpha, levels.SIDESLIP)),
-        "kappa": _held_at_slip(points, points.alpha, slipping, levels.SIDESLIP),
-    }
-    camber = np.round(_held_at_slip(points, points.gamma, slipping, levels.CAMBER), 1)
-    shared = [*_load_and_pressure(points), points.direction, points.mount]
-    found: list[Curve] = []
-    for i, name in enumerate(points.sweep_names):
-        rows = np.flatnonzero(points.sweep == i)
-        driven: list[Curve] = []
-        if slipping[rows].any():
-            driven = _along(points, name, "kappa", rows, [*shared, held["kappa"], camber])
-        rest = np.setdiff1d(rows[points.free_rolling[rows]], [row for curve in driven for row in curve.index])
-        # a grid counts as sideslip sweeps at several cambers
-        over = "alpha" if _set_points(alpha[rest], "alpha") >= _set_points(gamma[rest], "gamma") else "gamma"
-        found += [*driven, *_along(points, name, over, rest, [*shared, held[over], 0.0 * camber])]
-    return sorted(found, key=lambda c: (c.over, c.load, c.pressure, c.camber, c.held, not c.forward))
-
-
-def _held_at_slip(
-    points: Points, angle: np.ndarray, slipping: np.ndarray, kind: levels.LevelKind
-) -> np.ndarray:
-    """The angle (n,) [deg] held at each point of sweeps of slip, the same for sweeps of one level; NaN elsewhere."""
-    # Levels within each sweep first: those of a sideslip sweep over all angles say nothing about the angles that are held here.
-    held = np.full(len(angle), np.nan)
-    for i in np.unique(points.sweep[slipping]):
-        rows = points.sweep == i
-        held[rows] = levels.level_values(angle[rows], kind)
-    return np.asarray(np.degrees(levels.level_values(held, kind)) if slipping.any() else held)
-
-
-def _along(points: Points, name: str, over: str, rows: np.ndarray, keys: Sequence[np.ndarray]) -> list[Curve]:
-    """The groups of rows with equal keys that have enough set-points, in order of what varies."""
-    values, found = shown_values(points, over), []
-    for key, members in _groups(np.column_stack(keys)[rows]):
-        index = rows[members]
-        if _set_points(values[index], over) < FEWEST:
-            continue
-        load, pressure, direction, mount, held, camber = key.tolist()
-        found.append(
+    found: dict[str, list[np.ndarray]] = {name: [] for name in like.VARIED}
+    for over, rows in like.series(points, signed=True):
+        own = rows if over == "kappa" else rows[points.free_rolling[rows]]
+        values = shown_values(points, over)[own]
+        if _set_points(values, over) >= FEWEST:
+            found[over].append(own[np.argsort(values, kind="stable")])
+    load, pressure = _load_and_pressure(points)
+    out = []
+    for over, each in found.items():
+        held = {name: _held(points, name, each) for name in ("alpha", "gamma") if name != over}
+        out += [
             Curve(
                 over=over,
-                load=load,
-                pressure=pressure,
-                held=held,
-                forward=direction > 0,
-                mount=int(mount),
-                sweep=name,
-                index=index[np.argsort(values[index], kind="stable")],
-                camber=camber + 0.0,
+                load=float(load[rows[0]]),
+                pressure=float(pressure[rows[0]]),
+                held=next(iter(held.values()))[k],
+                forward=bool(points.direction[rows[0]] > 0),
+                mount=int(points.mount[rows[0]]),
+                sweep=points.sweep_names[points.sweep[rows[0]]],
+                index=rows,
+                camber=round(held["gamma"][k], 1) + 0.0 if over == "kappa" else 0.0,
             )
-        )
-    return found
+            for k, rows in enumerate(each)
+        ]
+    return sorted(out, key=lambda c: (c.over, c.load, c.pressure, c.camber, c.held, not c.forward))
+
+
+def _held(points: Points, name: str, rows: Sequence[np.ndarray]) -> list[float]:
+    """The angle [deg] that each of some curves holds, the same for curves of one level."""
+    middle = np.full(len(points), np.nan)
+    for own in rows:
+        middle[own] = np.median(getattr(points, name)[own])
+    held = np.degrees(levels.level_values(middle, levels.KINDS[name]))
+    return [float(held[own[0]]) for own in rows]
 
 
 def _set_points(values: np.ndarray, over: str) -> int:
