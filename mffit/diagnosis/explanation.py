@@ -17,6 +17,7 @@ from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.diagnosis.selection import Contest, contest
 from mffit.diagnosis.smooth import Smooth
 from mffit.effects import Effect
+from mffit.linearised.chained import NO_MEMORY
 from mffit.numbers import Numbers
 from tir.frozen import ReadOnlyArrays
 
@@ -57,7 +58,7 @@ class Explanation(ReadOnlyArrays):
         noise = self.scatter
         if not self.smooth.found:
             return noise
-        scatter = {c: replace(s, memory=0.0, independent=0.0) for c, s in noise.scatter.items()}
+        scatter = {c: replace(s, memory=NO_MEMORY) for c, s in noise.scatter.items()}
         return replace(noise, scatter=scatter)
 
     @property

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.as_json import keys
-from mffit.linearised.chained import ChainedErrors, Memory, chains_of
+from mffit.linearised.chained import NO_MEMORY, ChainedErrors, Memory, chains_of
 from mffit.linearised.gaussian import Directions
 from mffit.points import Points
 from mffit.quantities import SIDEWAYS, column
@@ -40,8 +40,7 @@ class Scatter:
 
     scale: float = 1.0  #: uncertainty over the stated one
     growth: float = 0.0  #: standard uncertainty over the reading, added in quadrature
-    memory: float = 0.0  #: correlation of neighbours in a chain, of the autocorrelated part
-    independent: float = 0.0  #: independent share of the variance, next to an autocorrelated part
+    memory: Memory = NO_MEMORY  #: autocorrelation along a chain
     tails: float = np.inf  #: degrees of freedom of Student's t; infinite for normal scatter
     beyond_weights: float = 1.0
     """Standard error of an estimate from weighted readings over the standard error that the weights alone suggest."""
@@ -138,7 +137,7 @@ class Noise(ReadOnlyArrays):
         for k, found in enumerate(self.scatter.values()):
             own = np.flatnonzero(channel == k)
             chains = self.chains(self.used[own], found.span)
-            out.append((own, ChainedErrors(chains, Memory(found.memory, found.independent))))
+            out.append((own, ChainedErrors(chains, found.memory)))
         return out
 
     def chains(self, rows: np.ndarray, span: MemorySpan) -> list[np.ndarray]:

@@ -192,12 +192,10 @@ def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, si
         runs = {n: _condensed(columns[rows], noise.stated[rows]) for n, columns in explained.runs.items()}
         found, channel, tails, here = _of_channel(channel, runs)
         u[rows], weight[rows] = channel.described(found.by).uncertainty(found.x), channel.terms.weight
-        memory = Memory.of(found.x)
         scatter[name] = Scatter(
             scale=found.size("scale"),
             growth=float(constants.USUAL_GROWTH) * found.size("growth"),
-            memory=memory.correlation,
-            independent=memory.independent,
+            memory=Memory.of(found.x),
             tails=tails,
             beyond_weights=beyond_weights(channel.standardised(found), tails),
             span=found.by.span or MemorySpan.SWEEP,
@@ -254,7 +252,7 @@ def _at_least_of_a_rig(noise: Noise, size: np.ndarray) -> Noise:
     """
     assumed = {}
     for name, readings in noise.by_channel(size).items():
-        change = noise.typical(name) * math.sqrt(1.0 - noise.scatter[name].memory ** 2)
+        change = noise.typical(name) * math.sqrt(1.0 - noise.scatter[name].memory.correlation ** 2)
         if change < constants.NO_NOISE_SHARE * rms(readings):
             assumed[name] = ASSUMED_NOISE_SHARE * rms(readings)
     return noise.assumed(assumed) if assumed else noise

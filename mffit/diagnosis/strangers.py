@@ -81,7 +81,7 @@ def offsets_or_memory(
     """The channels whose autocorrelated errors may as well be offsets of runs, if none of these effects is ``named`` (ids)."""
     found = []
     for channel in noise.channels:
-        scatter = noise.scatter[channel]
+        scatter, memory = noise.scatter[channel], noise.scatter[channel].memory.correlation
         near = tuple(
             effect
             for effect in candidates
@@ -89,6 +89,6 @@ def offsets_or_memory(
             and channel in noise.offsets[effect.id].channels
             and (noise.offsets[effect.id].log_odds > 0.0 or scatter.scale > constants.STATED_NOISE_FACTOR)
         )
-        if scatter.memory and near and not any(effect.id in named for effect in near):
-            found.append(OffsetsOrMemory(channel, scatter.memory, noise.typical(channel), near))
+        if memory and near and not any(effect.id in named for effect in near):
+            found.append(OffsetsOrMemory(channel, memory, noise.typical(channel), near))
     return found

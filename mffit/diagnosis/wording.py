@@ -301,12 +301,14 @@ def scatter(noise: Noise) -> list[str]:
         ]
         if part.growth:
             parts.append(f"it grows with the reading, by {100.0 * part.growth:.2g} % of it")
-        if part.memory:
+        if part.memory.correlation:
             beside = (
-                f", {100.0 * part.independent:.0f} % of their variance is not" if part.independent else ""
+                f", {100.0 * part.memory.independent:.0f} % of their variance is not"
+                if part.memory.independent
+                else ""
             )
             parts.append(
-                f"neighbouring errors of {THROUGH[part.span]} are correlated ({part.memory:.2f}){beside}"
+                f"neighbouring errors of {THROUGH[part.span]} are correlated ({part.memory.correlation:.2f}){beside}"
             )
         if math.isfinite(part.tails):
             parts.append("outliers are more frequent than in normal noise and lost their weight")

@@ -47,6 +47,9 @@ class Memory(NamedTuple):
         return np.array([_over_steps(by_correlation), _over_steps(by_share)])
 
 
+NO_MEMORY = Memory()
+
+
 def _over_steps(values: np.ndarray) -> np.ndarray:
     """Matrix (n, n) of the value (n,) at the number of steps between two readings."""
     places = np.arange(len(values))

@@ -16,6 +16,7 @@ from mffit.diagnosis.stated import stated_noise, with_uncertainties
 from mffit.diagnosis.validation import gap, validate
 from mffit.diagnosis.where import where
 from mffit.least_squares import FreeNumber
+from mffit.linearised.chained import Memory
 from mffit.points import make_points
 from mffit.rig import Simulation
 
@@ -71,7 +72,7 @@ def test_a_number_explains_no_more_than_there_is_however_steep_it_acts(problem, 
 
 
 def test_memory_acts_within_its_channel(problem):
-    scatter = {name: Scatter(memory=0.6 if name == "Mx" else 0.0) for name in CHANNELS}
+    scatter = {name: Scatter(memory=Memory(0.6 if name == "Mx" else 0.0)) for name in CHANNELS}
     noise = replace(stated_noise(problem.points, channels=CHANNELS), scatter=scatter)
     x = np.random.default_rng(1).standard_normal(3 * N) * np.repeat(list(U.values()), N)
     white, plain = noise.whiten(x), x / np.repeat(list(U.values()), N)

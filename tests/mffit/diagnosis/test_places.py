@@ -413,9 +413,9 @@ def test_noise_larger_than_stated_is_found_and_does_not_hide_the_effects():
 def test_errors_that_neighbours_share_count_as_fewer_readings():
     """Errors of the same size, common to three neighbours, make the answers less certain."""
     independent, shared = (three_effects(1.0, strange=20.0, alike=alike) for alike in (1, 3))
-    assert independent.noise.scatter["Fy"].memory == 0.0
+    assert independent.noise.scatter["Fy"].memory.correlation == 0.0
     # Two of three neighbours share 20 N of hypot(20, 6) N.
-    assert shared.noise.scatter["Fy"].memory == pytest.approx(2.0 / 3.0 * 400.0 / 436.0, abs=0.2)
+    assert shared.noise.scatter["Fy"].memory.correlation == pytest.approx(2.0 / 3.0 * 400.0 / 436.0, abs=0.2)
     assert_true(independent)
     assert_true(shared)
     for name in ("PKY6", "PDY2"):

@@ -14,6 +14,7 @@ from mffit.diagnosis.rest import _log_odds
 from mffit.diagnosis.scatter import ExplainingColumns, learned
 from mffit.diagnosis.stated import stated_noise
 from mffit.diagnosis.tails import beyond_weights, heavy_tails, weights
+from mffit.linearised.chained import Memory
 from mffit.linearised.gaussian import Informed
 from mffit.points import make_points
 from mffit.scatter import rms
@@ -71,7 +72,7 @@ def rng():
 def test_noise_as_stated_stays_as_stated(rng):
     scatter = found(rng.normal(0.0, 6.0, N)).scatter["Fy"]
     assert scatter.scale == pytest.approx(1.0, abs=0.15)  # 3.5 % of chance
-    assert (scatter.growth, scatter.memory, scatter.tails) == (0.0, 0.0, np.inf)
+    assert (scatter.growth, scatter.memory.correlation, scatter.tails) == (0.0, 0.0, np.inf)
 
 
 def test_uncertainties_stated_half_as_large_are_doubled(rng):
@@ -86,15 +87,15 @@ def test_noise_that_grows_with_the_force(rng):
 
 def test_errors_that_are_correlated_along_a_sweep(rng):
     scatter = found(correlated(rng, 0.9)).scatter["Fy"]
-    assert scatter.memory == pytest.approx(0.9, abs=0.08)
+    assert scatter.memory.correlation == pytest.approx(0.9, abs=0.08)
     assert scatter.scale == pytest.approx(1.0, abs=0.35)
 
 
 def test_a_memory_beside_independent_errors(rng):
     """Of 6 N together; a single memory would be a compromise that leaves slow errors unexplained."""
     scatter = found(0.8 * correlated(rng, 0.97) + rng.normal(0.0, 3.6, N), offsets=5.0).scatter["Fy"]
-    assert scatter.memory == pytest.approx(0.97, abs=0.03)
-    assert scatter.scale**2 * scatter.independent == pytest.approx(0.36, abs=0.1)
+    assert scatter.memory.correlation == pytest.approx(0.97, abs=0.03)
+    assert scatter.scale**2 * scatter.memory.independent == pytest.approx(0.36, abs=0.1)
 
 
 ERRORS = {
@@ -120,9 +121,9 @@ def test_offsets_of_runs_are_not_taken_for_a_memory(memory):
     assert noise.offsets["run-offsets-fy"].log_odds > constants.SURPRISING_LOG_ODDS
     assert 5.0 * noise.offsets["run-offsets-fy"].size == pytest.approx(np.std(drawn), rel=0.25)
     scatter = noise.scatter["Fy"]
-    assert scatter.memory == pytest.approx(memory, abs=0.15)
+    assert scatter.memory.correlation == pytest.approx(memory, abs=0.15)
     # What changes from one point to the next is well known, whatever the memory.
-    change, truth = scatter.scale**2 * (1.0 - scatter.memory), 1.0 - memory
+    change, truth = scatter.scale**2 * (1.0 - scatter.memory.correlation), 1.0 - memory
     assert change == pytest.approx(truth, rel=0.3)
 
 
@@ -144,7 +145,7 @@ def test_a_few_runs_hardly_separate_offsets_from_a_memory(seed):
 def test_errors_that_run_on_from_sweep_to_sweep_are_told_from_those_that_begin_anew(again, span):
     noise = found(correlated(np.random.default_rng(3), 0.96, again=again), offsets=5.0, longer=True)
     assert noise.scatter["Fy"].span is span
-    assert noise.scatter["Fy"].memory == pytest.approx(0.96, abs=0.03)
+    assert noise.scatter["Fy"].memory.correlation == pytest.approx(0.96, abs=0.03)
     assert noise.offset == frozenset()
 
 
@@ -154,8 +155,8 @@ def test_a_drift_is_found_where_a_single_memory_is_no_better_than_none():
     scatter = found(errors + np.random.default_rng(6).normal(0.0, 6.0, N), offsets=5.0, longer=True).scatter[
         "Fy"
     ]
-    assert scatter.memory > 0.85
-    assert scatter.independent == pytest.approx(0.8, abs=0.15)
+    assert scatter.memory.correlation > 0.85
+    assert scatter.memory.independent == pytest.approx(0.8, abs=0.15)
 
 
 def taken(t, file, lines):
@@ -226,7 +227,7 @@ def test_misfit_that_an_effect_could_explain_is_not_noise(rng):
     shape = np.concatenate([np.cos(np.linspace(0.0, 9.0, N)), np.zeros(N)])[:, None]
     scatter = found(rng.normal(0.0, 6.0, N) + 80.0 * shape[:N, 0], 100.0 * shape).scatter["Fy"]
     assert scatter.scale == pytest.approx(1.0, abs=0.15)
-    assert scatter.memory == 0.0
+    assert scatter.memory.correlation == 0.0
 
 
 @pytest.mark.parametrize(
@@ -238,7 +239,7 @@ def test_whitened_readings_have_unit_covariance(share, span):
     n, u = 30, rng.uniform(1.0, 3.0, 60)
     u[40] = np.inf
     chain, shared = np.repeat([0, 1, 2, 3], 15), rng.normal(size=(60, 4))
-    memory = {"Fy": Scatter(memory=0.8, independent=share, span=span), "Mz": Scatter(memory=0.3)}
+    memory = {"Fy": Scatter(memory=Memory(0.8, share), span=span), "Mz": Scatter(memory=Memory(0.3))}
     turn = np.concatenate([rng.permutation(n), np.zeros(n, dtype=int)])
     noise = Noise(
         u=u, stated=u, chain=chain, origin=None, scatter=memory, shared=shared, turn=turn,

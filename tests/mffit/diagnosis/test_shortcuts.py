@@ -12,6 +12,7 @@ from mffit.diagnosis.bumps import bump_scan
 from mffit.diagnosis.needs import possible, without
 from mffit.diagnosis.noise import Noise, Scatter
 from mffit.effects import CATALOG
+from mffit.linearised.chained import Memory
 from mffit.points import Points, make_points
 from mffit.rig import Simulation
 from mffit.rig_errors import T_REF
@@ -38,7 +39,7 @@ def test_the_best_bump_is_that_of_whole_whitened_shapes():
         stated=u,
         chain=np.concatenate([points.sweep, points.sweep + 6]),
         origin=None,
-        scatter={"Fy": Scatter(memory=0.6), "Mz": Scatter()},
+        scatter={"Fy": Scatter(memory=Memory(0.6)), "Mz": Scatter()},
     ).sharing(rng.normal(0.0, 3.0, (2 * n, 6)))
     axes = np.linalg.qr(rng.normal(size=(2 * n - 1, 3)))[0]
     residual = rng.normal(0.0, 2.0, 2 * n - 1)

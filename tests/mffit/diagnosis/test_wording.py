@@ -31,6 +31,7 @@ from mffit.diagnosis.rest import Answer, Rest, RestKind
 from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import CATALOG, NEEDS
+from mffit.linearised.chained import Memory
 from mffit.report import text
 from mffit.rig_errors import BY_NAME as RIG_ERRORS_BY_NAME
 from mffit.suspicion import Outlier
@@ -326,7 +327,7 @@ def test_every_need_has_words_and_a_test_of_the_points():
 
 def test_the_noise_is_stated_beside_the_declared_one():
     u = np.repeat([6.0, 0.6], 10)
-    parts = {"Fy": Scatter(scale=2.0, growth=0.015, memory=0.9, independent=0.3, tails=2.5), "Mz": Scatter()}
+    parts = {"Fy": Scatter(scale=2.0, growth=0.015, memory=Memory(0.9, 0.3), tails=2.5), "Mz": Scatter()}
     noise = Noise(u=u * np.repeat([2.0, 1.0], 10), stated=u, chain=np.zeros(20), origin=None, scatter=parts)
     Fy, Mz = wording.scatter(noise)
     assert Fy.startswith(
