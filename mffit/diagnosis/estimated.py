@@ -36,7 +36,7 @@ def estimated(found: Explanation, search: Search) -> Explanation:
     left = noise.measured(points) - found.refined.state.predict(points, noise.channels)
     plain = DiagnosisProblem(points, search.start, noise.at_least(left), found.problem.declared)
     beside = search.beside.without({n for e in found.chosen.effects for n in e.parameters})
-    freed = _freed(found, plain, beside, search.inexact.names)
+    freed = _freed(found, beside, search.inexact.names)
     refined, coefficients = plain.refine(found.chosen, freed)
     u = {**refined.stderr, **_standard_errors(found, plain, refined, beside, freed.names)}
     return replace(
@@ -49,17 +49,17 @@ def estimated(found: Explanation, search: Search) -> Explanation:
     )
 
 
-def _freed(found: Explanation, plain: DiagnosisProblem, beside: Numbers, known: Sequence[str]) -> Numbers:
+def _freed(found: Explanation, beside: Numbers, known: Sequence[str]) -> Numbers:
     """The numbers ``beside`` the effects that are estimated with them; all others stay as given, with their uncertainty.
 
     Calibrations look like the tyre and stay, and on a flat track the zeros, which the coefficients take up. Beside a model
     error, on a disc the asymmetries and all else move if the evidence tells them from it, as in a build. Without model error
     and effects the evidence decides. ``known`` are names of the numbers that may be wrong in the given model.
     """
-    points = plain.points
+    points = found.problem.points
     rig = {n: e for n in beside.names if n not in known and (e := error_of(n)) is not None}
     free = beside.given({n for n, e in rig.items() if e.is_gain or not points.curved})
-    evidence = _Evidence.of(found, plain.uncertain(found.refined, free))
+    evidence = _Evidence.of(found, free)
     if not any(found.problem.amplitude.values()):
         return free if found.chosen.effects or evidence.of_names(free.names) > 0.0 else EXACT
     odd = {n for n in free.names if points.curved and is_asymmetry(n)}
@@ -71,28 +71,25 @@ class _Evidence(NamedTuple):
     """The readings' evidence for numbers within their priors, beside the model error of an explanation."""
 
     known: Numbers  #: all that may move, the numbers of the effects included
-    white: (
-        np.ndarray
-    )  #: (m, 1 + k + s) residual at the prior means, derivatives by the numbers, and model error, whitened
+    slopes: np.ndarray  #: (m, k) whitened derivatives of the readings by them
+    missed: np.ndarray  #: (m, s) whitened changes by the model error
+    residual: np.ndarray  #: (m,) whitened, at the prior means
 
     @classmethod
-    def of(cls, found: Explanation, known: Numbers) -> _Evidence:
-        """The evidence at the numbers of an explanation."""
-        noise, points, problem = found.independent, found.problem.points, found.problem
-        slopes = slopes_of(found.refined.state, points, known.names, noise.channels)
-        left = noise.measured(points) - found.refined.state.predict(points, noise.channels)
-        at_means = np.nan_to_num(left) + slopes @ (known.values - known.expected)
-        missed = problem.structure.columns(problem.amplitude)
-        return cls(known, noise.whiten(np.column_stack([at_means, slopes, missed])))
+    def of(cls, found: Explanation, free: Numbers) -> _Evidence:
+        """The evidence at the numbers of an explanation, with those ``free`` in addition to its effects'."""
+        problem, structure = found.plain, found.problem.structure
+        known, missed = problem.uncertain(found.refined, free), structure.columns(found.problem.amplitude)
+        slopes, residual = problem.linear(found.refined, known)
+        return cls(known, problem.noise.whiten(slopes), problem.noise.whiten(missed), residual)
 
     def of_names(self, names: Collection[str]) -> float:
         """Gain of log evidence by the named numbers."""
         return self._gain(self.known) - self._gain(self.known.given(names))
 
     def _gain(self, numbers: Numbers) -> float:
-        k = len(self.known.names)
-        own = self.white[:, 1 : 1 + k][:, self.known.rows(numbers.names)] @ numbers.root
-        return Informed.of_rows(np.hstack([own, self.white[:, 1 + k :]]), self.white[:, 0]).gain
+        own = self.slopes[:, self.known.rows(numbers.names)] @ numbers.root
+        return Informed.of_rows(np.hstack([own, self.missed]), self.residual).gain
 
 
 def _strained(plain: DiagnosisProblem, chosen: Hypothesis, search: Search) -> bool:

@@ -155,6 +155,12 @@ class DiagnosisProblem:
         ]
         return numbers, inexact.without({free.name for free in frees})
 
+    def linear(self, refined: Hypothesis, known: Numbers) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives (c n, k) of the readings by known numbers, and the whitened residual (m,) at their prior means."""
+        slopes = slopes_of(refined.state, self.points, known.names, self.channels)
+        away = self.noise.whiten(slopes @ (known.values - known.expected))
+        return slopes, self.whitened(refined.state) + away
+
     def without_groups(
         self, refined: Hypothesis, inexact: Numbers, group: np.ndarray
     ) -> tuple[Sequence[str], np.ndarray, list[np.ndarray]]:
@@ -164,13 +170,12 @@ class DiagnosisProblem:
         """
         known = self.uncertain(refined, inexact)
         away = known.values - known.expected
-        slopes = slopes_of(refined.state, self.points, known.names, self.channels)
+        slopes, residual = self.linear(refined, known)
         white = self.noise.whiten(slopes @ known.root)
-        residual = -self.whitened(refined.state) - self.noise.whiten(slopes @ away)  # at the prior means
-        information, gradient = np.eye(len(away)) + white.T @ white, white.T @ residual
+        information, gradient = np.eye(len(away)) + white.T @ white, -white.T @ residual
         of_row = np.tile(group, len(self.channels))[self.noise.used]
         changes = [
-            known.root @ moved_without(white[rows], residual[rows], information, gradient) - away
+            known.root @ moved_without(white[rows], -residual[rows], information, gradient) - away
             for rows in (np.flatnonzero(of_row == k) for k in range(int(group.max()) + 1))
         ]
         return known.names, slopes, changes
