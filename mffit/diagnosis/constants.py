@@ -5,7 +5,6 @@ from __future__ import annotations
 from tir.constant import Count, Real, Series
 
 # Points and model that belong together
-FEWEST_POINTS_TO_DIAGNOSE = Count(12, "-", "With fewer points, chance alone decides between effects.")
 LOAD_RATIO_OF_ANOTHER_TYRE = Real(
     10.0, "-", "Load over FNOMIN, or its inverse, above which tyre or unit is wrong."
 )
@@ -17,6 +16,7 @@ MISFIT_OF_ANOTHER_TYRE = Real(30.0, "-", "Misfit over noise above which naming a
 # What the data must vary for an effect to be visible
 VISIBLE_SPIN_CAMBER = Real(0.2, "rad", "Smallest range of camber that shows the spin by camber alone.")
 VISIBLE_TIME = Real(60.0, "s", "Shortest test that shows a drift.")
+DISTANCE_LIKE_TIME = Real(0.98, "-", "Correlation of distance and time above which wear looks like drift.")
 VISIBLE_SENSE_SHARE = Real(0.1, "-", "Smallest share of points that each sense of a sweep must have.")
 
 # Stated noise

@@ -11,7 +11,6 @@ from mffit.constants import FEWEST, VISIBLE_TEMPERATURE
 from mffit.diagnosis import constants
 from mffit.diagnosis.notes import NotVisible
 from mffit.effects import OF_CHANNEL, Effect
-from mffit.fit.constants import STRONG_CORRELATION
 from mffit.points import Points, levels
 from mffit.points.clock import sense
 from mffit.rig import Simulation, distance_km
@@ -48,7 +47,7 @@ def _distance_is_not_time(points: Points) -> bool:
     if _spread(points.t) <= constants.VISIBLE_TIME or not _varies(points.V, levels.SPEED):
         return False
     likeness = float(np.corrcoef(points.t[known], distance_km(points)[known])[0, 1])
-    return likeness < STRONG_CORRELATION
+    return likeness < constants.DISTANCE_LIKE_TIME
 
 
 MET: dict[str, Callable[[Points], bool]] = {

@@ -13,6 +13,7 @@ from mffit.diagnosis.notes import AnotherTyre, OffsetsOrMemory, WithoutNoise
 from mffit.effects import Effect
 from mffit.errors import InputError
 from mffit.points import Points
+from mffit.points.constants import FEWEST_POINTS
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.suspicion.constants import DIFFERENCE_OF_ANOTHER_TYRE
@@ -23,9 +24,9 @@ def refuse_strangers(
     points: Points, tyre: Tyre, start: Simulation, channels: Iterable[str] = SIDEWAYS
 ) -> None:
     """Raise an InputError with the likely cause if model and data cannot belong together."""
-    if len(points) < constants.FEWEST_POINTS_TO_DIAGNOSE:
+    if len(points) < FEWEST_POINTS:
         raise InputError(
-            f"{len(points)} points are too few for a diagnosis; measure at least {constants.FEWEST_POINTS_TO_DIAGNOSE}"
+            f"{len(points)} points are too few for a diagnosis; measure at least {FEWEST_POINTS}"
         )
     ratio, most = float(np.median(points.Fz)) / float(tyre["FNOMIN"]), constants.LOAD_RATIO_OF_ANOTHER_TYRE
     if not 1.0 / most < ratio < most:

@@ -7,12 +7,7 @@ HUBER_THRESHOLD = Real(4.0, "-", "Residuals beyond this many robust standard dev
 NOMINAL_NOISE_SHARE = Real(0.01, "-", "Standard uncertainty over the range of a channel that states none.")
 
 # What the points determine
-STRONG_CORRELATION = Real(
-    0.95,
-    "-",
-    "Absolute correlation from which data hardly separate two things: that of coefficients is stated, and wear over a distance "
-    "looks like drift over time.",
-)
+STRONG_CORRELATION = Real(0.95, "-", "Smallest absolute correlation of two coefficients that is stated.")
 
 # Prior knowledge of coefficients
 SIMILAR_TYRES_SPREAD = Real(0.3, "-", "Relative standard deviation of a coefficient among similar tyres.")
@@ -27,6 +22,7 @@ LEAST_SPREAD_DEFAULT = Real(
 CONDITIONS_OF_A_MISFIT = Count(
     500, "-", "Drawn conditions at which a base at other nominal conditions is compared with itself."
 )
+
 # Radii
 USUAL_MISFIT_OF_RADIUS = Real(
     0.0003,

@@ -187,8 +187,8 @@ CONDITIONS = {
         {"alpha": [0.0, 0.1, 0.0, 0.1], **TWO_SWEEPS},
     ),
     "runs": (
-        {"file": [0, 1, 2, 2], "files": ("a", "b", "c")},
-        {"file": [0, 1, 1, 1], "files": ("a", "b", "c")},
+        {"file": [0, 1, 2, 3], "files": ("a", "b", "c", "d")},
+        {"file": [0, 1, 2, 2], "files": ("a", "b", "c", "d")},
     ),
     "continuous": ({"continuous": [False, True]}, {"continuous": False}),
     "drive": ({"kappa": [0.0, 0.05], "Fx": [0.0, 900.0]}, {"kappa": 0.0, "Fx": [0.0, 5.0]}),
@@ -271,11 +271,11 @@ def test_a_model_of_another_size_is_refused(factor, refused):
         refuse_strangers(points, tyre, Simulation.of(TYRE))
 
 
-def test_twelve_points_are_the_fewest():
+def test_eight_points_are_the_fewest():
     points = read(programme())
-    refuse_strangers(points.select(np.arange(12)), TYRE, Simulation.of(TYRE))
-    with pytest.raises(InputError, match="11 points are too few for a diagnosis; measure at least 12"):
-        refuse_strangers(points.select(np.arange(11)), TYRE, Simulation.of(TYRE))
+    refuse_strangers(points.select(np.arange(8)), TYRE, Simulation.of(TYRE))
+    with pytest.raises(InputError, match="7 points are too few for a diagnosis; measure at least 8"):
+        refuse_strangers(points.select(np.arange(7)), TYRE, Simulation.of(TYRE))
 
 
 def test_moments_in_other_axes_are_refused_by_name():
