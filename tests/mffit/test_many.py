@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from plain_pages import without_pictures
 from small_rigs import LOADS, disc, simulated
 
 from mffit import config, fleet, pipeline
@@ -63,7 +64,8 @@ def built(project):
     (broken / "camber_900.csv").unlink()
     (broken / "tyre.toml").write_text((broken / "tyre.toml").read_text().replace('"small"', '"broken"'))
     out = project.with_name("out")
-    return out, mffit("build", broken / "tyre.toml", project / "tyre.toml", "--out", out)
+    with without_pictures():
+        return out, mffit("build", broken / "tyre.toml", project / "tyre.toml", "--out", out)
 
 
 def test_a_failure_does_not_stop_the_others_and_sets_the_exit_code(built):

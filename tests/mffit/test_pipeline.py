@@ -8,6 +8,7 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
+from plain_pages import without_pictures
 from small_rigs import MZ, SAMPLE, disc, flat, simulated, sound, truth
 
 import mffit
@@ -145,9 +146,10 @@ def note_of(diagnosis) -> str:
 def test_the_direct_method_is_redone_without_the_fault(tmp_path):
     """60 N on the load cell: eps = 1 + r_e C_gamma / (F R) with F wrong by 60 N, then with the correct F."""
     true = campaign(tmp_path, faults={"F0_N": -60.0})
-    found = mffit.diagnose(
-        tmp_path / "tyre.toml", SAMPLE / "true.tir", out=tmp_path / "found", effects=OFFSET
-    )
+    with without_pictures():
+        found = mffit.diagnose(
+            tmp_path / "tyre.toml", SAMPLE / "true.tir", out=tmp_path / "found", effects=OFFSET
+        )
     note = note_of(found)
     assert note in json.loads((tmp_path / "found" / "diagnosis.json").read_text())["notes"]
     before, u_before, after, u_after = map(float, re.findall(r"(?<![\w.])-?\d+\.\d+", note)[:4])

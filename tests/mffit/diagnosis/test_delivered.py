@@ -11,6 +11,7 @@ from dataclasses import replace
 import pytest
 from blind_corrected import PLAIN_CHI2, Plan, draw, misses, scored
 from blind_set import write_case
+from plain_pages import without_pictures
 
 import mffit
 from mffit.diagnosis.rest import Answer
@@ -36,7 +37,8 @@ from mffit.report import text
     ids=lambda plan: plan.name,
 )  # fmt: skip
 def test_the_delivered_file_is_the_tyre(plan):
-    score = scored(plan)
+    with without_pictures():
+        score = scored(plan)
     assert set(score.causes) <= score.known, score.line()
     assert not score.false, score.line()
     assert score.new_file
@@ -51,7 +53,8 @@ def of_the_rig(tmp_path_factory):
     case, _ = draw(Plan("rig", 9, (), ("sideslip-misalignment", "loadcell-offset-mz"), True, "white"))
     write_case(case, folder / "case", folder / "truth.json")
     out = folder / "case" / "out" / "diagnosis"
-    found = mffit.diagnose(folder / "case" / "tyre.toml", folder / "case" / "given.tir", out=out)
+    with without_pictures():
+        found = mffit.diagnose(folder / "case" / "tyre.toml", folder / "case" / "given.tir", out=out)
     return found, out, folder / "case" / "given.tir"
 
 
@@ -79,9 +82,10 @@ def test_sentences_say_the_bare_name_of_the_file(of_the_rig):
 def test_a_corrected_file_of_an_earlier_run_does_not_stay(of_the_rig):
     """It would pass as this run's answer, whatever the run looks for: here a single effect."""
     found, out, given = of_the_rig
-    write_diagnosis(replace(found, delivers=True), out)
-    assert list(out.glob("*.tir"))
-    mffit.diagnose(given.parent / "tyre.toml", given, out=out, effects=CATALOG[:1])
+    with without_pictures():
+        write_diagnosis(replace(found, delivers=True), out)
+        assert list(out.glob("*.tir"))
+        mffit.diagnose(given.parent / "tyre.toml", given, out=out, effects=CATALOG[:1])
     assert not list(out.glob("*.tir"))
 
 

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from plain_pages import without_pictures
 from small_programme import LOADS, SLIP, TYRE, U_FY, U_MZ
 
 from mffit import pipeline
@@ -76,7 +77,8 @@ def test_a_suspicion_is_listed_and_not_repaired(tmp_path):
     assert not effect.repaired
     assert found.gap_after == found.gap_before
     assert found.gap_named.rms("Fy") < 0.9 * found.gap_before.rms("Fy")
-    write_diagnosis(found, tmp_path)
+    with without_pictures():
+        write_diagnosis(found, tmp_path)
     assert not (tmp_path / "warm.tir").exists()
     assert json.loads((tmp_path / "diagnosis.json").read_text())["model_after"] == found.given_file
     assert found.answer is Answer.UNDECIDED
