@@ -91,12 +91,12 @@ def test_the_files_radius_is_the_measured_one(sound_rig):
         assert sound_rig.fit.written.state(load, Vx=6.0).Re == pytest.approx(r_e, abs=1e-4)
 
 
-def test_errors_of_drawn_rigs_stay_within_their_intervals():
-    draws = [one_rig(seed) for seed in (101, 102)]
-    pulls = np.array([pull for draw in draws for pull in draw.pulls.values()])
+def test_errors_of_a_drawn_rig_stay_within_their_intervals():
+    draw = one_rig(101)
+    pulls = np.array([*draw.pulls.values()])
     assert len(pulls) > 60
     assert np.mean(np.abs(pulls) < 1.96) > 0.8
     # Many of them are correlated: intervals half or twice as wide as they should be give 2 or 0.5.
     assert 0.6 < np.sqrt(np.mean(np.square(pulls))) < 1.5
-    assert all(misfit < 1.15 for draw in draws for misfit in draw.misfit.values())
-    assert np.mean([band.inside for draw in draws for band in draw.bands.values()]) > 0.7
+    assert all(misfit < 1.15 for misfit in draw.misfit.values())
+    assert np.mean([band.inside for band in draw.bands.values()]) > 0.7
