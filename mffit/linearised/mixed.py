@@ -36,7 +36,7 @@ class Variances(NamedTuple):
 class MixedEvidence(NamedTuple):
     """Log marginal likelihood of the residuals, up to a constant, its derivatives by :class:`Variances`, and their information.
 
-    That is how fast the derivatives are expected to fall, without what the three kinds of variances tell of each other.
+    That is how fast the derivatives are expected to fall, if neither the kinds of variances nor the groups told of each other.
     """
 
     value: float
@@ -112,8 +112,9 @@ class Mixed(ReadOnlyArrays):
         rows = found.halfway.reshape(own.size, len(found.mean))
         # transposed, rows lie as the library wants them; the product takes their place, as new memory costs more than it
         turned = dtrmm(1.0, found.root, rows.T, trans_a=1, overwrite_b=1).T.reshape(found.halfway.shape)
-        spread = np.sum(found.half @ (turned @ np.swapaxes(turned, 1, 2)) * found.half, axis=2)
-        own_variance = np.diagonal(found.own, axis1=1, axis2=2) + w * w * spread
+        spread = found.half @ (turned @ np.swapaxes(turned, 1, 2)) @ np.swapaxes(found.half, 1, 2)
+        own_covariance = found.own + w * w * spread
+        own_variance = np.diagonal(own_covariance, axis1=1, axis2=2)
         square = w * sums.square - found.mean @ found.pull - w * w * np.sum(sums.own_pull * alone)
         scaled = found.scaled
         share = gain + scaled**2
@@ -123,7 +124,7 @@ class Mixed(ReadOnlyArrays):
         log_size = found.log_determinant + sums.readings * given.noise
         root, size = found.root / np.exp(0.5 * given.common)[:, None], np.exp(0.5 * given.own)
         told = np.eye(len(gain)) - root @ root.T
-        own_told = np.eye(len(size)) - found.own / np.outer(size, size)
+        own_told = np.eye(len(size)) - own_covariance / np.outer(size, size)
         return MixedEvidence(
             value=-0.5 * float(square + log_size),
             common=0.5 * (share - 1.0),
