@@ -130,7 +130,6 @@ class Scoring(NamedTuple):
 
     parameters: Sequence[SearchedParameter]
     evidence: Callable[[np.ndarray], Scored]  #: log evidence at the parameters
-    tolerance: float = constants.SEARCH_TOLERANCE  #: gain of log evidence by a step at which the search ends
 
     def density(self, x: np.ndarray) -> Scored:
         """Log posterior density."""
@@ -156,7 +155,7 @@ class Scoring(NamedTuple):
             step, last = form.move(damping), form.move(UNDAMPED)
             assert step is not None
             assert last is not None
-            if 0.5 * form.gain(last) < self.tolerance:
+            if 0.5 * form.gain(last) < constants.SEARCH_TOLERANCE:
                 return np.asarray(np.clip(x + last, lower, upper))
             there = self.density(trial := np.clip(x + step, lower, upper))
             rise, promised = there.value - here.value, 0.5 * form.gain(step)
