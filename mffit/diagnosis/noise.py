@@ -49,6 +49,12 @@ class Scatter:
     """Whether readings hardly scatter, like those of a simulation; the noise is then assumed."""
 
 
+keys(
+    Scatter,
+    "scale growth memory=memory.correlation independent=memory.independent tails beyond_weights span without_noise",
+)
+
+
 class RunOffsets(NamedTuple):
     """Offsets of whole runs, compared with autocorrelated errors alone."""
 
