@@ -70,6 +70,11 @@ class Plan(Brief):
         return self.steps[-1].after if self.steps else self.now
 
     @property
+    def helpful(self) -> tuple[PlanStep, ...]:
+        """The candidates that lower the uncertainty of the goal, each alone."""
+        return tuple(trial for trial in self.trials if trial.after < self.now)
+
+    @property
     def points(self) -> int:
         """Points of the whole list."""
         return sum(step.run.cost for step in self.steps)

@@ -135,6 +135,11 @@ class BuildView(Overlay):
         return self.file_names.get("normal", self.file_names.get("both", ""))
 
     @property
+    def beside_curves(self) -> int:
+        """Number of points that are on no curve."""
+        return len(self.points) - sum(len(curve.index) for curve in self.curves)
+
+    @property
     def residual_unit(self) -> str:
         """Unit of the residuals: the point's uncertainty if every channel states one, else the rms misfit."""
         return "u" if all(np.isfinite(c.noise) for c in self.channels) else "rms misfit"

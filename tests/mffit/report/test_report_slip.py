@@ -50,6 +50,7 @@ def named(panel, begin):
 def test_every_reading_is_on_one_curve_over_an_angle_or_over_slip(view):
     rows = np.concatenate([curve.index for curve in view.curves])
     assert sorted(rows) == list(range(len(view.points)))
+    assert view.beside_curves == 0
     over = {o: sum(c.over == o for c in view.curves) for o in ("alpha", "gamma", "kappa")}
     assert over == {"alpha": 3 * 2 + 2 * 2, "gamma": 0, "kappa": 3 * 2 * 5 + 2 * 2}
     held = {(c.load, c.camber): [] for c in view.curves if c.over == "kappa" and c.pressure == 250.0}
