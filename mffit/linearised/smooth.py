@@ -106,8 +106,7 @@ class SmoothFunctions(ReadOnlyArrays):
     def faded(self, settings: np.ndarray, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """:meth:`beyond` (n,) at ``settings`` (n, d), and the functions (n, m), which fade with it.
 
-        The fading model error is exp(-beyond/2) of that at the nearest tested settings. The tyre may stray from it ever farther:
-        the variance is ``beyond`` times that of the model error.
+        The fading model error is exp(-beyond/2) of that at the nearest tested settings.
         """
         beyond = self.beyond(settings, lengths)
         return beyond, np.exp(-0.5 * beyond)[:, None] * self.columns(settings)
