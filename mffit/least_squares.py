@@ -200,7 +200,7 @@ class Solution(ReadOnlyArrays):
     @property
     def left(self) -> float:
         """Predicted decrease of ``cost`` by an undamped step: 0 at a minimum."""
-        return _Quadratic.around(self.objective, self.x, self.here).left
+        return Quadratic.around(self.objective, self.x, self.here).left
 
 
 def solve(
@@ -222,7 +222,7 @@ def solve(
     here, at_x = problem.linear(x), True
     cost = objective.cost(x, here.data, here.limits)
     damping, taken, close = 1e-3, 0, False
-    form, bend = _Quadratic.around(objective, x, here), np.zeros((len(x), len(x)))
+    form, bend = Quadratic.around(objective, x, here), np.zeros((len(x), len(x)))
     while taken < max_steps and len(x) and not close:
         close = form.left < tolerance * cost
         forms = [form, form.bent(bend)] if bend.any() and not close else [form]
@@ -233,7 +233,7 @@ def solve(
         move, x, cost, damping, at_x = step.x - x, step.x, step.cost, step.damping, False
         if not close and taken < max_steps:
             here, at_x, before = problem.linear(x), True, form
-            form = _Quadratic.around(objective, x, here)
+            form = Quadratic.around(objective, x, here)
             bend = _bend(bend, move, before, form)
     return Solution(objective, x, cost, taken, here if at_x else None)
 
@@ -296,7 +296,7 @@ def _step(
     objective: Objective,
     x: np.ndarray,
     cost: float,
-    forms: Sequence[_Quadratic],
+    forms: Sequence[Quadratic],
     damping: float,
     least: float,
 ) -> _Step | None:
@@ -313,7 +313,7 @@ def _step(
     last, first, share = damping == UNDAMPED, damping, 1.0
     undamped: list[np.ndarray | None] = []
 
-    def tried(form: _Quadratic, move: np.ndarray | None, damping: float) -> _Step | None:
+    def tried(form: Quadratic, move: np.ndarray | None, damping: float) -> _Step | None:
         if move is None:
             return _Step(x, math.inf, damping)
         promised = form.gain(move)
@@ -321,7 +321,7 @@ def _step(
             return None
         trial = np.clip(x + move, objective.lower, objective.upper)
         new = objective.cost(trial, *objective.problem.residual(trial))
-        return _Step(trial, new, _next_damping(damping, cost - new, promised))
+        return _Step(trial, new, next_damping(damping, cost - new, promised))
 
     while damping < 1e12:
         found = [tried(form, form.move(damping), damping) for form in forms]
@@ -341,7 +341,7 @@ def _step(
     return None
 
 
-class _Quadratic(NamedTuple):
+class Quadratic(NamedTuple):
     """Local model of the sum of squares from linearised residuals: quadratic in data and priors, limits kept individually."""
 
     gradient: np.ndarray  #: (k,) half the gradient of the sum of squares of data and priors
@@ -352,7 +352,7 @@ class _Quadratic(NamedTuple):
     high: np.ndarray  #: (k,) moves to the upper bounds
 
     @classmethod
-    def around(cls, objective: Objective, x: np.ndarray, here: Linear) -> _Quadratic:
+    def around(cls, objective: Objective, x: np.ndarray, here: Linear) -> Quadratic:
         return cls(
             gradient=here.slope.T @ here.data + objective.precision * (x - objective.expected),
             curvature=here.slope.T @ here.slope + np.diag(objective.precision),
@@ -362,7 +362,7 @@ class _Quadratic(NamedTuple):
             high=objective.upper - x,
         )
 
-    def bent(self, bend: np.ndarray) -> _Quadratic:
+    def bent(self, bend: np.ndarray) -> Quadratic:
         """The form with additional curvature (k, k), which need not be positive definite."""
         return self._replace(curvature=self.curvature + bend)
 
@@ -447,7 +447,7 @@ def _lowest(slope: float, curvature: float, limits: np.ndarray, rise: np.ndarray
     return float((place[k - 1] if k > 0 else 0.0) - at[k] / bend[k])
 
 
-def _bend(bend: np.ndarray, move: np.ndarray, before: _Quadratic, after: _Quadratic) -> np.ndarray:
+def _bend(bend: np.ndarray, move: np.ndarray, before: Quadratic, after: Quadratic) -> np.ndarray:
     """Updated estimate (k, k) of the second-derivative part of the curvature, from the gradients at both ends of a move (k,).
 
     The symmetric rank-one update, skipped where rounding would dominate it (Nocedal and Wright 2006, section 6.2).
@@ -460,7 +460,7 @@ def _bend(bend: np.ndarray, move: np.ndarray, before: _Quadratic, after: _Quadra
     return bend if abs(along) <= rounding else bend + np.outer(lacking, lacking) / along
 
 
-def _next_damping(damping: float, fall: float, promised: float) -> float:
+def next_damping(damping: float, fall: float, promised: float) -> float:
     """The damping after a step, from its actual and its predicted decrease of the sum of squares."""
     if fall > 0.75 * promised:
         return damping / 5.0

@@ -24,7 +24,7 @@ settings.load_profile("mffit")
 def pytest_collection_finish() -> None:
     """Leave modules and collected tests out of garbage collections, which took an eighth of all time."""
     gc.freeze()
-    gc.set_threshold(10_000, 20, 20)
+    gc.set_threshold(100_000, 20, 20)
 
 
 @pytest.hookimpl(optionalhook=True)

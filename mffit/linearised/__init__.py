@@ -5,4 +5,5 @@ declared terms with errors that are autocorrelated; ``components`` declares the 
 the most probable parameters.
 """
 
-from mffit.linearised.fitted import LinearisedChannel, LinearisedFit, Uncertain, linearised
+from mffit.linearised.channel import LinearisedChannel, Uncertain
+from mffit.linearised.fitted import LinearisedFit, linearised

@@ -11,7 +11,7 @@ import numpy as np
 from mffit.constants import CERTAIN_SIGMA, FALSE_ALARM
 from mffit.linearised import constants
 from mffit.linearised.mixed import Mixed, Variances
-from mffit.linearised.search import ParameterSearch, SearchedParameter, flat, normal
+from mffit.linearised.search import Scored, Scoring, SearchedParameter, flat, normal
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.scatter import rms
 from tir.frozen import ReadOnlyArrays
@@ -121,32 +121,34 @@ class Terms(ReadOnlyArrays):
         """
         rows = np.concatenate(list(self.model.groups))
         misfit = max(rms((self.model.residual * unit)[rows]), 1e-12)
-        parameters = _parameters(self.smooth, misfit, most_noise)
+        search = Scoring(_parameters(self.smooth, misfit, most_noise), self._scored)
+        first = Components.of_logarithms(one.start for one in search.parameters)
 
-        def evidence(x: np.ndarray) -> tuple[float, np.ndarray]:
-            given, by_common, by_own = self._with_slopes(x)
-            found = self.model.evidence(given)
-            slope = found.common[: len(by_common)] @ by_common + found.own @ by_own
-            slope[-1] += 2.0 * found.noise
-            return found.value, slope
+        def best(begin: Components) -> Components:
+            return Components.of_logarithms(search.most_probable(begin.logarithms.tolist()))
 
-        search = ParameterSearch(parameters, evidence, len(rows))
+        def density(at: Components) -> float:
+            return search.density(at.logarithms).value
 
-        def best(begin: Components) -> np.ndarray:
-            return search.most_probable(dict(zip(parameters, begin.logarithms.tolist(), strict=True)))
-
-        first = Components.of_logarithms(one.start for one in parameters.values())
         found = best(near or first)
-        seen = Components.of_logarithms(found)
-        if near is None and seen.offset > seen.missed and self.smooth.inputs:
-            others = first.over_one_input(self.smooth)
-            other = best(max(others, key=lambda one: search.density(one.logarithms)[0]))
-            if search.density(other)[0] > search.density(found)[0] + CERTAIN_EVIDENCE:
-                return Components.of_logarithms(other)
-        return seen
+        if near is None and found.offset > found.missed and self.smooth.inputs:
+            other = best(max(first.over_one_input(self.smooth), key=density))
+            if density(other) > density(found) + CERTAIN_EVIDENCE:
+                return other
+        return found
+
+    def _scored(self, x: np.ndarray) -> Scored:
+        """Log evidence at the log components (k,)."""
+        given, by_common, by_own = self._with_slopes(x)
+        found, m = self.model.evidence(given), len(by_common)
+        slope = found.common[:m] @ by_common + found.own @ by_own
+        information = by_common.T @ found.of_common[:m, :m] @ by_common + by_own.T @ found.of_own @ by_own
+        slope[-1] += 2.0 * found.noise
+        information[-1, -1] += 4.0 * found.of_noise
+        return Scored(found.value, slope, information)
 
 
-def _parameters(smooth: SmoothFunctions, misfit: float, most_noise: float) -> dict[str, SearchedParameter]:
+def _parameters(smooth: SmoothFunctions, misfit: float, most_noise: float) -> list[SearchedParameter]:
     """The components on the scale of the search, in the order of :attr:`Components.logarithms`.
 
     The search starts at a model error as large as the ``misfit``, the size of the residuals, and differences of runs of a third
@@ -160,18 +162,15 @@ def _parameters(smooth: SmoothFunctions, misfit: float, most_noise: float) -> di
         prior = normal(at, math.log(constants.USUAL_RATIO)) if known else flat
         return SearchedParameter(at, math.log(lower), math.log(upper), prior)
 
-    lengths = {
-        f"length over {one.name}": around(
-            2.0 * one.spacing, one.spacing, constants.LONGEST_LENGTH * one.width
-        )
-        for one in smooth.inputs
-    }
-    return {
-        "missed": around(misfit, tiny, 3.0 * misfit, known=False),
-        **lengths,
-        "offset": around(misfit / 3.0, tiny, misfit),
-        "scale": around(most / 10.0, 1e-6, most),
-        "shape": around(misfit / 3.0, tiny, misfit),
-        "shape_length": around(0.3, 0.05, 1.0),
-        "noise": around(1.0, 1e-3, most_noise, known=False),
-    }
+    lengths = (
+        around(2.0 * one.spacing, one.spacing, constants.LONGEST_LENGTH * one.width) for one in smooth.inputs
+    )
+    return [
+        around(misfit, tiny, 3.0 * misfit, known=False),  # missed
+        *lengths,
+        around(misfit / 3.0, tiny, misfit),  # offset
+        around(most / 10.0, 1e-6, most),  # scale
+        around(misfit / 3.0, tiny, misfit),  # shape
+        around(0.3, 0.05, 1.0),  # shape_length
+        around(1.0, 1e-3, most_noise, known=False),  # noise
+    ]

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from mffit.linearised import constants
-from mffit.linearised.fitted import LinearisedChannel, LinearisedFit
+from mffit.linearised.channel import LinearisedChannel, Uncertain
 from mffit.linearised.inputs import LEVELS, REVERSED, SLIPS, Input
 from mffit.linearised.mixed import Mixed, Variances
 
 
-def growths(fit: LinearisedFit, channel: LinearisedChannel) -> np.ndarray:
+def growths(channel: LinearisedChannel, numbers: Sequence[Uncertain]) -> np.ndarray:
     """Standard deviation (d,) of the error beyond the tested range of every condition, over the force, at one unit of
     :meth:`Input.strayed`; from both ends.
     """
-    model, given = _with_priors(fit, channel)
+    model, given = _with_priors(channel, numbers)
     settings, kept = channel.seen.settings, np.sort(np.concatenate(model.groups))
     ends = [
         (i, rest, kept[out])
@@ -35,13 +35,13 @@ def growths(fit: LinearisedFit, channel: LinearisedChannel) -> np.ndarray:
     return np.asarray(np.sqrt(np.maximum(strays, 0.0) / np.where(far > 0.0, far, np.inf)))
 
 
-def _with_priors(fit: LinearisedFit, channel: LinearisedChannel) -> tuple[Mixed, Variances]:
+def _with_priors(channel: LinearisedChannel, numbers: Sequence[Uncertain]) -> tuple[Mixed, Variances]:
     """The model with numbers that are free within their priors, because the present values are those of all readings."""
     m = len(channel.missed)
-    known, free = np.linalg.norm(channel.turn, axis=1), [not number.held for number in fit.numbers]
-    spread = np.array([number.spread for number in fit.numbers])
+    known, free = np.linalg.norm(channel.turn, axis=1), [not number.held for number in numbers]
+    spread = np.array([number.spread for number in numbers])
     has_prior = np.isfinite(spread)
-    expected = np.where(has_prior, [number.expected for number in fit.numbers], 0.0)[free]
+    expected = np.where(has_prior, [number.expected for number in numbers], 0.0)[free]
     size = np.where(has_prior, spread, constants.FREE_OVER_KNOWN * known)[free]
     slopes = channel.slopes[:, free]
     every = max(1, len(channel.rows) // (2 * (m + len(size))))  # two readings for each number are enough

@@ -34,12 +34,18 @@ class Variances(NamedTuple):
 
 
 class MixedEvidence(NamedTuple):
-    """Log marginal likelihood of the residuals, up to a constant, and its derivatives by :class:`Variances`."""
+    """Log marginal likelihood of the residuals, up to a constant, its derivatives by :class:`Variances`, and their information.
+
+    That is how fast the derivatives are expected to fall, without what the three kinds of variances tell of each other.
+    """
 
     value: float
     common: np.ndarray  #: (m,)
     own: np.ndarray  #: (q,)
     noise: float
+    of_common: np.ndarray  #: (m, m) information
+    of_own: np.ndarray  #: (q, q)
+    of_noise: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,11 +121,17 @@ class Mixed(ReadOnlyArrays):
         misfit = square - scaled @ scaled - np.sum(own**2 / own_size)
         effective = np.sum(1.0 - gain) + np.sum(1.0 - own_variance / own_size)
         log_size = found.log_determinant + sums.readings * given.noise
+        root, size = found.root / np.exp(0.5 * given.common)[:, None], np.exp(0.5 * given.own)
+        told = np.eye(len(gain)) - root @ root.T
+        own_told = np.eye(len(size)) - found.own / np.outer(size, size)
         return MixedEvidence(
             value=-0.5 * float(square + log_size),
             common=0.5 * (share - 1.0),
             own=0.5 * np.sum(own_share - 1.0, axis=0),
             noise=-0.5 * float(sums.readings - misfit - effective),
+            of_common=0.5 * told**2,
+            of_own=0.5 * np.sum(own_told**2, axis=0),
+            of_noise=0.5 * float(sums.readings - effective),
         )
 
     def posterior(self, given: Variances) -> MixedPosterior:

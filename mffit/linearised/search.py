@@ -6,14 +6,17 @@ A parameter is searched on a scale without ends: the logarithm of a size, or the
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy  # its parts are loaded on first use
 
+from mffit.least_squares import UNDAMPED, Quadratic, next_damping
 from mffit.linearised import constants
 
+DAMPING = 0.1
+"""Damping of the first step of a search, and the least after a step that is taken back."""
 LogPrior = Callable[[float], tuple[float, float]]
 """Log prior density of a parameter on the scale of the search, up to a constant, and its derivative."""
 
@@ -97,7 +100,9 @@ class ParameterSearch(NamedTuple):
             "maxiter": int(constants.SEARCH_STEPS),
             "ftol": constants.SEARCH_TOLERANCE / max(self.readings, 1),
         }
-        found = minimize(loss, start, jac=True, method="L-BFGS-B", bounds=bounds, options=options)
+        found = scipy.optimize.minimize(
+            loss, start, jac=True, method="L-BFGS-B", bounds=bounds, options=options
+        )
         return np.asarray(found.x)
 
     def log_probability(self, x: np.ndarray) -> float:
@@ -110,3 +115,52 @@ class ParameterSearch(NamedTuple):
         return value + 0.5 * float(
             np.sum(np.log(2.0 * math.pi / np.maximum(axes, constants.LEAST_CURVATURE)))
         )
+
+
+class Scored(NamedTuple):
+    """A log density, up to a constant, at some parameters (k,)."""
+
+    value: float
+    slope: np.ndarray  #: (k,) its derivatives
+    information: np.ndarray  #: (k, k) how fast the slope is expected to fall
+
+
+class Scoring(NamedTuple):
+    """The posterior of parameters (k,) whose readings tell how much they inform (Fisher's method of scoring)."""
+
+    parameters: Sequence[SearchedParameter]
+    evidence: Callable[[np.ndarray], Scored]  #: log evidence at the parameters
+    tolerance: float = constants.SEARCH_TOLERANCE  #: gain of log evidence by a step at which the search ends
+
+    def density(self, x: np.ndarray) -> Scored:
+        """Log posterior density."""
+        value, slope, information = self.evidence(x)
+        h = float(constants.EVIDENCE_STEP)
+        for i, (one, at) in enumerate(zip(self.parameters, x.tolist(), strict=True)):
+            log, by = one.prior(at)
+            value, slope[i] = value + log, slope[i] + by
+            falls = (one.prior(at - h)[1] - one.prior(at + h)[1]) / (2.0 * h)
+            information[i, i] += max(falls, float(constants.LEAST_CURVATURE))
+        return Scored(value, slope, information)
+
+    def most_probable(self, near: Sequence[float]) -> np.ndarray:
+        """The parameters (k,) of the largest density, searched from those ``near``.
+
+        The search ends with an undamped step, whose gain is too small to be worth another look.
+        """
+        lower, upper = (np.array([one[i] for one in self.parameters]) for i in (1, 2))
+        x, damping, none = np.clip(near, lower, upper), DAMPING, np.zeros((0, len(near)))
+        here = self.density(x)
+        for _ in range(int(constants.SEARCH_STEPS)):
+            form = Quadratic(-here.slope, here.information, none[:, 0], none, lower - x, upper - x)
+            step, last = form.move(damping), form.move(UNDAMPED)
+            assert step is not None
+            assert last is not None
+            if 0.5 * form.gain(last) < self.tolerance:
+                return np.asarray(np.clip(x + last, lower, upper))
+            there = self.density(trial := np.clip(x + step, lower, upper))
+            rise, promised = there.value - here.value, 0.5 * form.gain(step)
+            damping = next_damping(damping, rise, promised) if rise > 0.0 else max(6.0 * damping, DAMPING)
+            if rise > 0.0:
+                x, here = trial, there
+        return x

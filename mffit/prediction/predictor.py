@@ -15,7 +15,6 @@ from mffit.constants import COVERAGE_FACTOR_95
 from mffit.least_squares import root
 from mffit.linearised import LinearisedChannel, LinearisedFit
 from mffit.linearised.components import Components
-from mffit.linearised.ends import growths
 from mffit.linearised.inputs import SLIPS, Input
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.numbers import Numbers
@@ -437,7 +436,7 @@ def predictor(
             root_with_held(own, kept, spread),
             own.noise,
             own.size,
-            growths(left, own),
+            left.growths[name],
         )
         for name, own in left.channels.items()
     }

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import tempfile
+from collections.abc import Callable, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -80,3 +82,10 @@ def built(content: dict[str, Any], folder: Path, seed: int = 3) -> mffit.results
     """The build of a simulated campaign."""
     simulated(content, folder, seed)
     return mffit.build(folder / "tyre.toml")
+
+
+@cache
+def sound(plan: Callable[[], dict[str, Any]]) -> mffit.results.BuildResult:
+    """The build of :func:`flat` or :func:`disc` without changes, once in a process; its folder is gone."""
+    with tempfile.TemporaryDirectory() as folder:
+        return built(plan(), Path(folder))

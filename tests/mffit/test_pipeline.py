@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
-from small_rigs import MZ, SAMPLE, built, disc, flat, simulated, truth
+from small_rigs import MZ, SAMPLE, disc, flat, simulated, sound, truth
 
 import mffit
 import tir
@@ -225,8 +225,8 @@ def test_alignment_of_a_project_uses_the_measured_stiffness(tmp_path):
     assert mffit.align(sae / "tyre.toml").correction_deg == pytest.approx(-found.correction_deg, rel=1e-3)
 
 
-def test_a_flat_track_has_no_bias_and_one_file(tmp_path):
-    result = built(flat(), tmp_path)
+def test_a_flat_track_has_no_bias_and_one_file():
+    result = sound(flat)
     assert undistorted(result.config, result.fit) is None
     assert list(result.files) == ["normal"]
     assert result.tyre is result.tyres["normal"]

@@ -11,6 +11,7 @@ import pandas as pd
 import pytest
 import tomli_w
 from method_figures import compared
+from plain_pages import without_pictures
 from small_rigs import disc, simulated
 
 import mffit
@@ -48,7 +49,8 @@ def finished(tmp_path_factory):
         {"fit": {"exclude": [{"file": "sideslip_1400.csv", "lines": LINES, "why": WHY}]}, "lab": LAB}
     )
     path.write_text(text.replace("[rig]", f"{tables}\n[rig]", 1))
-    return mffit.build(path, folder / "out")
+    with without_pictures():
+        return mffit.build(path, folder / "out")
 
 
 @pytest.fixture(scope="module")

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize
 from scipy.special import gammaincc
 
 from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.fit.fitted import uncertain
 from mffit.fit.problem import FitProblem
-from mffit.least_squares import FreeNumber
+from mffit.least_squares import POLISH_TOLERANCE, FreeNumber
 from mffit.linearised.constants import POINTS_EXAMINED
 from mffit.linearised.mixed import HELD, FurtherColumns, LeftOutReadings, Mixed, Variances
+from mffit.linearised.search import Scored, Scoring, SearchedParameter
 from mffit.rig_errors import BY_NAME
 from mffit.scatter import rms
 from tir.frozen import ReadOnlyArrays
@@ -110,14 +110,14 @@ class JointFit(ReadOnlyArrays):
         """The log marginal likelihood, maximal over the random effects' variances; ``held`` numbers are at their prior means."""
         common = self._held(held)
 
-        def loss(x: np.ndarray) -> tuple[float, np.ndarray]:
+        def evidence(x: np.ndarray) -> Scored:
             found = self.model.evidence(Variances(common, 2.0 * x, 0.0))
-            return -found.value, -2.0 * found.own
+            return Scored(found.value, 2.0 * found.own, 4.0 * found.of_own)
 
-        start = np.log(self.usual)
-        bounds = [(x + float(np.log(NO_SCATTER)), 0.0) for x in start.tolist()]
-        found = minimize(loss, start, jac=True, method="L-BFGS-B", bounds=bounds)
-        return Explained(-float(found.fun), Variances(common, 2.0 * found.x, 0.0))
+        start = np.log(self.usual).tolist()
+        sizes = [SearchedParameter(x, x + float(np.log(NO_SCATTER)), 0.0) for x in start]
+        x = Scoring(sizes, evidence, POLISH_TOLERANCE).most_probable(start)
+        return Explained(evidence(x).value, Variances(common, 2.0 * x, 0.0))
 
     def alike(self, held: Collection[str] = ()) -> Variances:
         """The variances without random effects."""

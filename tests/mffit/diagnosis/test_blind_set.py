@@ -46,11 +46,6 @@ def test_hidden_causes_are_named_and_no_others(name):
     assert verdict.structure or not verdict.causes or verdict.shrink > 2.0, verdict.line()
 
 
-def test_effects_of_one_signature_are_reported_as_a_tie():
-    verdict = judge(case("8007-ply-steer-moderate-exact").draw())
-    assert {*verdict.named, *verdict.ties[0]} == {"ply-steer", "sideslip-misalignment"}
-
-
 @pytest.fixture(scope="module")
 def verdicts():
     """Every seventh of effect and size; three pairs, four right models, three structures without a name."""

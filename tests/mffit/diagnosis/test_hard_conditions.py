@@ -12,7 +12,6 @@ from blind_scores import judge
 SEED = 77
 NAMED = (
     "outliers-loadcell-gain-large-2057952192",
-    "correlated-residual-torque-large-492419518",
     "compliance-steering-compliance-large-1687762816",
 )
 

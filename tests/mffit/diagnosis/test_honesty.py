@@ -94,7 +94,8 @@ def test_a_sweep_that_is_off_for_no_known_reason_is_unexplained(right_model):
     off = points.sweep == next(
         k for k, name in enumerate(points.sweep_names) if name.startswith("coupled_1") and "20" in name
     )
-    found = diagnose(points.replace(gamma=np.where(off, 0.0, points.gamma)), case.given, config)
+    half = points.replace(gamma=np.where(off, 0.0, points.gamma)).select(np.arange(0, len(points), 2))
+    found = diagnose(half, case.given, config)
     assert found.unexplained
     assert found.answer is Answer.UNKNOWN
     blamed = {rest.sweep for rest in found.rest if rest.kind in (RestKind.SCATTER, RestKind.SWEEP)}

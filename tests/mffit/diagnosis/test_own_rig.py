@@ -10,9 +10,3 @@ def test_an_effect_three_to_ten_times_its_detection_limit_is_named_first():
     assert verdict.named[:1] == ("wear",)
     assert not verdict.extra
     assert verdict.shrink > 1.0
-
-
-def test_a_cause_outside_the_library_is_called_unexplained():
-    verdict = own_rig.judge(*own_rig.outside_set("friction that falls with sliding", seed=100))
-    assert verdict.unexplained
-    assert verdict.named == ()

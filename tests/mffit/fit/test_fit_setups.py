@@ -10,6 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
+from plain_pages import without_pictures
 from small_rigs import FY, MZ, SAMPLE, disc, simulated, truth
 
 import mffit
@@ -48,7 +49,8 @@ def project(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def result(project):
-    return mffit.build(project / "tyre.toml", out=project / "out")
+    with without_pictures():
+        return mffit.build(project / "tyre.toml", out=project / "out")
 
 
 def test_every_set_up_has_zeros_of_its_own_and_the_misfit_is_the_noise(result):

@@ -16,8 +16,8 @@ from mffit.least_squares import Linear, condensed
 
 
 @pytest.fixture(scope="module")
-def built(tmp_path_factory):
-    return small_rigs.built(small_rigs.flat(), tmp_path_factory.mktemp("flat"))
+def built():
+    return small_rigs.sound(small_rigs.flat)
 
 
 @pytest.fixture

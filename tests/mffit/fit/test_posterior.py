@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from small_rigs import disc, simulated
+from small_rigs import disc, simulated, sound
 
 import mffit
 from mffit import config as configuration
@@ -14,15 +14,8 @@ from mffit.numbers import Numbers
 
 
 @pytest.fixture(scope="module")
-def fitted(tmp_path_factory):
-    from drawn_rigs import SAMPLE, plan_content
-
-    from mffit import virtual_rig
-
-    content = plan_content(thin=True)
-    folder = tmp_path_factory.mktemp("thin")
-    virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=3)
-    return mffit.build(folder / "tyre.toml").fit
+def fitted():
+    return sound(disc).fit
 
 
 def test_draws_scatter_by_the_standard_errors(fitted):
@@ -42,11 +35,10 @@ def test_the_same_seed_draws_the_same_tyres(fitted):
     assert ensemble(fitted, 1, seed=4) != ensemble(fitted, 1, seed=5)
 
 
-def test_fitted_numbers_move_with_a_held_one_as_their_covariance_says(tmp_path):
+def test_fitted_numbers_move_with_a_held_one_as_their_covariance_says(fitted, tmp_path):
     """PECP1 is held at the direct measurement: a build in which it is another one ends where the covariance puts it."""
-    simulated(disc(), tmp_path / "held")
     simulated(disc(spin={"pecp1": "model"}), tmp_path / "set")
-    held = mffit.build(tmp_path / "held" / "tyre.toml", with_report=False).fit
+    held = fitted
     other = f"PECP1={held.tyre['PECP1'] + 0.03!r}"
     end = mffit.build(
         configuration.load(tmp_path / "set" / "tyre.toml", coefficients=[other]), with_report=False

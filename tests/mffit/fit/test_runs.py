@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import small_rigs
+from plain_pages import without_pictures
 from scipy.optimize import minimize
 
 import mffit
@@ -56,7 +57,8 @@ def scattered(tmp_path_factory):
     content["noise"] = {"Fy_N": small_rigs.FY, "Mz_Nm": small_rigs.MZ, "Mx_Nm": 1.0}
     small_rigs.simulated(content, folder)
     drawn = {sweep["file"].removesuffix(".csv"): sweep["faults"] for sweep in content["sweep"]}
-    return mffit.build(folder / "tyre.toml", folder / "out"), folder / "out", drawn
+    with without_pictures():
+        return mffit.build(folder / "tyre.toml", folder / "out"), folder / "out", drawn
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+import brush
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
@@ -63,3 +65,15 @@ def test_the_last_searches_of_a_build_end_at_a_minimum(campaign, tmp_path, monke
         begun = by_trf(problem, numbers, np.array([n.start for n in numbers]))
         assert end.cost - min(here, begun) < WORTH
         assert end.cost - here < 2.0 * end.left + 0.1  # and it promises no less than there is
+
+
+def test_no_start_leads_to_a_lower_minimum(tmp_path):
+    """The sum of squares of a brush tyre's Mz has a minimum on either side of QEZ1 = 0, a tenth apart."""
+    search = mffit.build(brush.written(brush.Brush(), tmp_path, 1), with_report=False).fit.search
+    numbers = search.problem.starting_here(search.numbers)
+    problem = search.problem.free([n.name for n in numbers])
+    ends = {
+        x: solve(problem, [replace(n, start=x if n.name == "QEZ1" else n.start) for n in numbers]).cost
+        for x in (-8.0, -4.0, -1.0, 0.9, search.values["QEZ1"])
+    }
+    assert min(ends.values()) > 0.99 * ends[search.values["QEZ1"]], ends

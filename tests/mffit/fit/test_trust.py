@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 import pytest
+from plain_pages import without_pictures
 from small_rigs import FY, LOADS, MZ, SAMPLE, flat
 
 import tir
@@ -37,7 +38,7 @@ def rough(tmp_path_factory):
         if path.name.startswith("camber"):
             table["Fy_N"] += 20.0 * FY * np.random.default_rng(1).standard_normal(len(table))
         table.to_csv(path, index=False)
-    with pytest.raises(SystemExit) as end:
+    with without_pictures(), pytest.raises(SystemExit) as end:
         main(["build", str(folder / "tyre.toml")])
     out = folder / "out"
     return Ended(end.value.code, out, json.loads((out / "result.json").read_text(encoding="utf-8")))

@@ -157,10 +157,13 @@ def test_a_zero_is_found_where_the_tyre_is_of_the_formula():
 
 
 def test_a_miss_that_changes_from_setting_to_setting_has_no_shorter_length_than_their_distance():
-    """Loads 800 to 2200 N in three steps, alternately 60 N too high and too low; sideslip is swept over 0.24 rad."""
+    """Loads 800 to 2200 N in three steps, alternately 180 N too high and too low; sideslip is swept over 0.24 rad.
+
+    It is so large that offsets of the runs, of which all those at one load would be alike, are no explanation.
+    """
     points = drawn(missed=0.0)
     signs = np.where(np.isin(points.Fz, (800.0, 1600.0)), 1.0, -1.0)
-    found = left(points.replace(Fy=points.Fy + MISSED * signs))
+    found = left(points.replace(Fy=points.Fy + 3.0 * MISSED * signs))
     lengths = dict(zip((one.name for one in found.smooth.inputs), found.components.lengths, strict=True))
     assert lengths["Fz"] == pytest.approx(1400.0 / 3.0, rel=1e-6)
     assert lengths["alpha"] > 0.24 / 12.0

@@ -50,6 +50,20 @@ def test_evidence_and_its_slopes_are_those_of_the_dense_gaussian(model):
     assert [*found.common, *found.own, found.noise] == pytest.approx(slopes, rel=1e-5, abs=1e-7)
 
 
+def test_information_about_the_variances_is_that_of_the_dense_gaussian(model):
+    """Half the trace of V^-1 dV V^-1 dV, by Fisher; that about the runs is with the common numbers known."""
+    found, size = model.evidence(GIVEN), np.exp(GIVEN.common)
+    told = model.common.T @ np.linalg.solve(dense(model, GIVEN), model.common)
+    np.testing.assert_allclose(found.of_common, 0.5 * told**2 * np.outer(size, size))
+    alone = dense(model, GIVEN._replace(common=np.full(3, -99.0)))
+    moves = []
+    for k in range(2):
+        step = GIVEN._replace(common=np.full(3, -99.0), own=GIVEN.own + 1e-6 * np.eye(2)[k])
+        moves.append(np.linalg.solve(alone, (dense(model, step) - alone) / 1e-6))
+    expected = [[0.5 * np.trace(a @ b) for b in moves] for a in moves]
+    np.testing.assert_allclose(found.of_own, expected, rtol=1e-4)
+
+
 def test_posterior_is_the_conditional_of_the_dense_gaussian(model):
     found = model.posterior(GIVEN)
     to_readings = np.exp(GIVEN.common)[:, None] * model.common.T

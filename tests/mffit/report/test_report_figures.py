@@ -12,7 +12,7 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 from PIL import Image
-from small_rigs import built, flat
+from small_rigs import flat, sound
 
 from mffit.pipeline.on_road import on_road
 from mffit.quantities import CHANNELS
@@ -69,9 +69,9 @@ def test_parts_have_a_row_per_channel_and_angle_and_a_panel_per_load(view):
         assert len({(panel.y.low, panel.y.high, panel.y.label) for panel in even}) == 1
 
 
-def test_all_bands_of_a_report_are_those_of_the_road(tmp_path):
+def test_all_bands_of_a_report_are_those_of_the_road():
     """One width at one condition, around the best estimate, also where the tyre is not as the formula."""
-    result = built(flat(), tmp_path)
+    result = sound(flat)
     channels = {
         name: dataclasses.replace(one, missed=one.missed + 0.1 * np.max(np.abs(result.points.channel(name))))
         for name, one in result.prediction.channels.items()

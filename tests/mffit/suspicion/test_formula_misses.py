@@ -14,6 +14,7 @@ import pandas as pd
 import pytest
 from brush import Brush, sweeps, written
 from small_rigs import flat, simulated
+from small_rigs import sound as sound_rig
 
 import mffit
 from mffit.report.build_view import view_of
@@ -122,9 +123,8 @@ def test_in_a_tyre_of_the_formula_such_a_sweep_is_named_with_what_is_wrong(tmp_p
     assert found.looks in result.reasons[0]
 
 
-def test_a_sound_tyre_of_the_formula_has_no_limit(tmp_path):
-    simulated(flat(), tmp_path)
-    result = mffit.build(tmp_path / "tyre.toml", with_report=False)
+def test_a_sound_tyre_of_the_formula_has_no_limit():
+    result = sound_rig(flat)
     assert result.trusted
     assert result.trust.remarks == ()
     assert result.remains.sweep is None

@@ -16,7 +16,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from small_rigs import FY, SAMPLE, flat, simulated
+from plain_pages import without_pictures
+from small_rigs import FY, SAMPLE, flat, simulated, sound
 
 import mffit
 from mffit.points.noise import OverNoise
@@ -50,7 +51,8 @@ def few(tmp_path_factory):
         table = pd.read_csv(path)
         own = table.assign(u_Fy_N=2.0 * FY) if path.name == "coupled.csv" else silent(table)
         own.to_csv(path, index=False)
-    return mffit.build(folder / "tyre.toml", folder / "out"), folder / "out"
+    with without_pictures():
+        return mffit.build(folder / "tyre.toml", folder / "out"), folder / "out"
 
 
 @pytest.fixture(scope="module")
@@ -99,9 +101,9 @@ def test_without_a_stated_noise_no_place_shows_a_ratio(unstated):
     assert "Fy" not in noise_in_the_window(unstated)
 
 
-def test_without_a_stated_noise_the_scatter_is_estimated(unstated, tmp_path):
+def test_without_a_stated_noise_the_scatter_is_estimated(unstated):
     """The same readings with their noise stated: uncertainties within a quarter, not several times as large."""
-    stated = mffit.build(campaign(tmp_path, lambda table: table))
+    stated = sound(flat)
     for name in ("PKY1", "PKY2", "PDY1", "PCY1", "QBZ1"):
         u, reference = (fit.fit.coefficients[name].stderr for fit in (unstated, stated))
         assert u == pytest.approx(reference, rel=0.25), name

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 from small_rigs import belt_with_one_left_out
 
 import mffit
 from mffit.results import BuildResult
+from mffit.viewer import project_data
+from mffit.window.session import Session, stated
 
 
 @pytest.fixture(scope="session")
@@ -27,3 +30,17 @@ def tyre_toml(original: Path, tmp_path: Path) -> Path:
     """A copy of the project that a test may change."""
     shutil.copytree(original.parent, tmp_path / "project")
     return tmp_path / "project" / "tyre.toml"
+
+
+@pytest.fixture(scope="session")
+def data(result: BuildResult) -> dict[str, Any]:
+    """What the page shows of the build."""
+    return project_data(result) | {"before": None}
+
+
+@pytest.fixture
+def session(tyre_toml: Path, data: dict[str, Any]) -> Session:
+    """An open project whose first fit has finished."""
+    found = Session(tyre_toml)
+    found.data, found.fits, found._fitted = dict(data), 1, stated(found.file.config())
+    return found

@@ -28,8 +28,9 @@ from mffit.quantities import SIDEWAYS
 from mffit.report.verdict import judgement, verdict
 from mffit.viewer import project_data, project_html, project_page
 from mffit.viewer.project_points import differing
+from mffit.window.app import Opened
 from mffit.window.runs import carry_out
-from mffit.window.session import Session, stated
+from mffit.window.session import Session
 from tests.browser import PAPER, PHONE, SCREEN, brightness, complaints, console_errors, look, opened, sheets
 
 SHOWN = "!!(window.mffit && mffit.data() && mffit.data().points.line)"
@@ -419,7 +420,6 @@ def served(given: Any, port: int = 0) -> Iterator[str]:
 
 def test_a_file_leads_into_the_window_and_the_address_bar_has_no_key(browser, tyre_toml):
     """As `mffit open` starts a browser: cookies of SameSite=Strict stay behind where a file redirects."""
-    from mffit.window.app import Opened
     from mffit.window.serving import _leading_to
 
     with served(Opened(Session(tyre_toml))) as address, _leading_to(address, 1) as page:
@@ -442,7 +442,6 @@ def drop(browser: Any, path: Path) -> None:
 
 
 def test_a_folder_dropped_into_the_page_is_stored_once_agreed(browser, original, tmp_path):
-    from mffit.window.app import Opened
     from mffit.window.recordings_folder import RecordingsFolder
 
     (tmp_path / "run" / "deep").mkdir(parents=True)
@@ -476,8 +475,6 @@ def test_a_folder_dropped_into_the_page_is_stored_once_agreed(browser, original,
 
 
 def test_the_page_proposes_what_the_ticked_recordings_say_and_sends_only_what_was_chosen(browser, tmp_path):
-    from mffit.window.app import Opened
-
     def value(name: str) -> str:
         return str(ask(browser, f"document.querySelector('[name={name}]').value"))
 
@@ -526,20 +523,10 @@ def window(tyre_toml: Path) -> Iterator[tuple[str, subprocess.Popen]]:
         process.communicate()
 
 
-def fitted(tyre_toml: Path, result: Any) -> Any:
-    """An open project whose first fit has finished."""
-    from mffit.window.app import Opened
-
-    session = Session(tyre_toml)
-    session.data, session.fits = mffit.viewer.project_data(result) | {"before": None}, 1
-    session._fitted = stated(session.file.config())
-    return Opened(session)
-
-
-def test_the_sentence_of_a_refused_change_goes_with_its_cause(browser, tyre_toml, result):
+def test_the_sentence_of_a_refused_change_goes_with_its_cause(browser, tyre_toml, session):
     """It does not take the name of the coefficient for that of another table, either."""
     right = tyre_toml.read_bytes()
-    with served(fitted(tyre_toml, result)) as address:
+    with served(Opened(session)) as address:
         enter(browser, address)
         shown(browser)
         ask(browser, "mffit.move('PEY1', -0.9)")
@@ -577,11 +564,11 @@ class _Foreign(BaseHTTPRequestHandler):
     do_POST = do_GET
 
 
-def test_a_server_of_somebody_else_at_the_port_is_asked_nothing(browser, tyre_toml, result):
+def test_a_server_of_somebody_else_at_the_port_is_asked_nothing(browser, tyre_toml, session):
     """Neither by a page that is looked at, nor by one behind it, whatever is clicked there."""
     first, had_ended = browser.current_window_handle, "has ended"
     status = lambda: browser.find_element("id", "status").text  # noqa: E731
-    with served(fitted(tyre_toml, result)) as address:
+    with served(Opened(session)) as address:
         home = enter(browser, address)
         shown(browser)
         browser.switch_to.new_window("tab")
@@ -622,8 +609,6 @@ def test_a_server_of_somebody_else_at_the_port_is_asked_nothing(browser, tyre_to
 
 def test_points_are_seen_before_the_first_fit_ends(browser, tyre_toml, result):
     """Without what works on a fit; then the fit comes with its verdict."""
-    from mffit.window.app import Opened
-
     session = Session(tyre_toml)
     visible = lambda css: [e for e in browser.find_elements("css selector", css) if e.is_displayed()]  # noqa: E731
     with served(Opened(session)) as address:
@@ -662,10 +647,10 @@ def test_coefficients_of_the_pictures_come_first(page):
     assert after.index("Aligning") < after.index("Lateral")
 
 
-def test_each_of_eight_tabs_saves(browser, tyre_toml, result):
+def test_each_of_eight_tabs_saves(browser, tyre_toml, session):
     """All of them show what each saved; a headless browser says that all are seen, as windows side by side are."""
     first = browser.current_window_handle
-    with served(fitted(tyre_toml, result)) as address:
+    with served(Opened(session)) as address:
         home, tabs = enter(browser, address), [first]
         for _ in range(7):
             browser.switch_to.new_window("tab")
@@ -688,13 +673,12 @@ def test_each_of_eight_tabs_saves(browser, tyre_toml, result):
         browser.get("about:blank")
 
 
-def test_a_recording_dropped_on_an_open_project_is_shown_and_added(browser, tyre_toml, result, tmp_path):
+def test_a_recording_dropped_on_an_open_project_is_shown_and_added(browser, tyre_toml, session, tmp_path):
     before = tyre_toml.read_text(encoding="utf-8")
     entry = '[[sweep]]\nfile = "camber_900.csv"\n'
     tyre_toml.write_text(before.replace(entry, ""), encoding="utf-8")
     shutil.move(tyre_toml.with_name("camber_900.csv"), tmp_path / "rolls_backward.csv")
-    opened = fitted(tyre_toml, result)
-    with served(opened) as address:
+    with served(Opened(session)) as address:
         home = enter(browser, address)
         drop(browser, tmp_path / "rolls_backward.csv")
         until(lambda: ask(browser, "document.getElementById('store').open"))
@@ -719,10 +703,8 @@ def test_a_recording_dropped_on_an_open_project_is_shown_and_added(browser, tyre
         browser.get("about:blank")
 
 
-def test_a_save_of_another_program_is_shown_beside_the_click(browser, tyre_toml, result):
-    opened = fitted(tyre_toml, result)
-    session = opened.session
-    with served(opened) as address:
+def test_a_save_of_another_program_is_shown_beside_the_click(browser, tyre_toml, session):
+    with served(Opened(session)) as address:
         enter(browser, address)
         edit = session.edit
 
@@ -744,8 +726,8 @@ def test_a_save_of_another_program_is_shown_beside_the_click(browser, tyre_toml,
         browser.get("about:blank")
 
 
-def test_settings_are_seen_changed_and_refused_in_their_place(browser, tyre_toml, result):
-    with served(fitted(tyre_toml, result)) as address:
+def test_settings_are_seen_changed_and_refused_in_their_place(browser, tyre_toml, session):
+    with served(Opened(session)) as address:
         enter(browser, address)
         press(browser, "#settings summary")
         row = "document.getElementById('setting [normal] weight')"
@@ -763,10 +745,9 @@ def test_settings_are_seen_changed_and_refused_in_their_place(browser, tyre_toml
         browser.get("about:blank")
 
 
-def test_a_call_without_an_answer_says_so(browser, tyre_toml, result):
-    opened = fitted(tyre_toml, result)
-    session, go = opened.session, Event()
-    with served(opened) as address:
+def test_a_call_without_an_answer_says_so(browser, tyre_toml, session):
+    go = Event()
+    with served(Opened(session)) as address:
         enter(browser, address)
         edit = session.edit
         session.edit = lambda *given: (go.wait(30.0), edit(*given))[1]

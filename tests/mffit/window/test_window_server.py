@@ -21,22 +21,9 @@ import pytest
 from inside import client_of
 
 from mffit.errors import InputError
-from mffit.viewer import project_data
 from mffit.window.app import Opened, within
 from mffit.window.runs import RunOutcome, _work, carry_out, out_of
-from mffit.window.session import Session, stated
-
-
-@pytest.fixture
-def session(tyre_toml: Path, result: Any) -> Session:
-    """An open project whose first fit has finished."""
-    found = Session(tyre_toml)
-    found.data, found.fits, found._fitted = (
-        project_data(result) | {"before": None},
-        1,
-        stated(found.file.config()),
-    )
-    return found
+from mffit.window.session import Session
 
 
 @pytest.fixture
