@@ -80,7 +80,7 @@ def plausible_ranges(
     largest load, 20 degrees of sideslip, and pressures a fifth beyond the tested ones. The camber range grows by half, up to 45
     degrees; beyond, the quadratic term of the curvature would cost more inside the range than it gains outside. Each end moves
     towards its target as long as the limits of :mod:`mffit.fit.constraints` hold, no characteristic changes faster than in
-    public tyres, and grip and stiffness over load follow their slope over the tested loads and pressures.
+    public tyres, and grip, stiffness and moment over load follow their slope over the tested loads and pressures.
     """
     model = SimpleNamespace(**values)
     ranges = dict(tested)
@@ -185,13 +185,29 @@ def _as_tested(model: Any, ranges: Mapping[str, float], name: str, tested: Mappi
 
 
 def _along(model: Any, ranges: Mapping[str, float], name: str, x: np.ndarray) -> list[np.ndarray]:
-    """Grip and stiffness over load at values (n,) of the range ``name``: (k, n) over a grid of the other ranges."""
+    """Grip and stiffness over load at values (n,) of the range ``name``: (k, n) over a grid of the other ranges.
+
+    For the largest load also the largest moment over load. Towards no load that vanishes with the length of the contact, along
+    a curve.
+    """
     others = grid(envelope(ranges))
-    conditions = (
+    conditions = [
         np.tile(x, others[0].size) if name.startswith(axis) else np.repeat(values, len(x))
         for axis, values in zip(("FZ", "CAM", "PRES"), others, strict=True)
-    )
-    return [found.reshape(-1, len(x)) for found in characteristics(model, *conditions)]
+    ]
+    found = characteristics(model, *conditions)
+    if name == "FZMAX":
+        found.append(_largest_moment(model, ranges["ALPMAX"], *conditions) / conditions[0])
+    return [one.reshape(-1, len(x)) for one in found if np.any(one)]
+
+
+def _largest_moment(
+    model: Any, most: float, Fz: np.ndarray, gamma: np.ndarray, pressure: np.ndarray
+) -> np.ndarray:
+    """Largest aligning moment (n,) over sideslip up to ``most``: half the difference of both sides, in which camber cancels."""
+    size = np.linspace(0.0, most, int(constants.STEPS_OF_A_GRID))[:, None]
+    left, right = (evaluate(model, Fz, alpha, gamma, pressure=pressure)[0].Mz for alpha in (-size, size))
+    return np.asarray(0.5 * np.max(np.abs(right - left), axis=0))
 
 
 def _as_in_public_tyres(

@@ -114,8 +114,8 @@ class LinearisedChannel(ReadOnlyArrays):
         inputs = self.smooth.inputs
         settings, middle = settings_of(points, inputs), [0.5 * (one.lower + one.upper) for one in inputs]
         settings = np.where(np.isfinite(settings), settings, middle)
-        squared, functions = self.smooth.faded(settings, np.array(self.components.lengths))
-        return squared, turned(points, self.name)[:, None] * functions
+        untold, functions = self.smooth.faded(settings, np.array(self.components.lengths))
+        return untold, turned(points, self.name)[:, None] * functions
 
     def told_beside(self, model: Mixed, columns: np.ndarray) -> FurtherColumns:
         """What the residuals of a ``model`` tell of ``columns`` (n, j), which replace its numbers other than the model error."""

@@ -36,7 +36,7 @@ USUAL_TEMPERATURES = Series(
 SPACINGS_OF_AN_END = Real(
     3.0,
     "-",
-    "Depth of an end of a swept range that is predicted from the rest, in shortest lengths: a quarter of one side.",
+    "Depth of an end of a swept range that is predicted from the rest, in shortest lengths: a quarter of the range.",
 )
 FREE_OVER_KNOWN = Real(
     100.0,

@@ -14,28 +14,25 @@ from mffit.linearised.mixed import Mixed, Variances
 
 
 def growths(channel: LinearisedChannel, numbers: Sequence[Uncertain]) -> np.ndarray:
-    """Standard deviation (d, 2) of the error below and above every tested range, at one unit of :meth:`Input.beyond` to 3/2.
-
-    That power is how a curve strays whose slope is known up to an end and then wanders at random. Of the load it is over the
-    load, of other conditions in the unit of the channel.
+    """Standard deviation (d,) of the error beyond the tested range of every condition, over the force, at one unit of
+    :meth:`Input.strayed`; from both ends.
     """
     model, given = _with_priors(channel, numbers)
     settings, kept = channel.seen.settings, np.sort(np.concatenate(model.groups))
     ends = [
-        (i, sides, rest, kept[out])
+        (i, rest, kept[out])
         for i, one in enumerate(channel.smooth.inputs)
-        for sides, rest, out in _ends(one, settings[kept, i])
+        for rest, out in _ends(one, settings[kept, i])
     ]
-    growth = np.zeros((settings.shape[1], 2))
+    force = channel.seen.points.channel(channel.name) / channel.unit - channel.model.residual
+    strays, far = np.zeros((2, settings.shape[1]))
     predicted = model.left_out(given, [rows for *_, rows in ends])
-    for (i, sides, rest, _), found in zip(ends, predicted, strict=True):
-        at = settings[found.rows, i]
+    for (i, rest, _), found in zip(ends, predicted, strict=True):
         # Not all of it is the tyre's: noise, and what each run has of its own.
         own = np.exp(given.noise) + np.sum(model.own[found.rows] ** 2 * np.exp(given.own), axis=1)
-        strays = (found.error**2 - own) * (channel.unit[found.rows] / rest.size(at)) ** 2
-        far = np.sum(np.abs(rest.beyond(at)) ** 3)
-        growth[i, sides] = np.sqrt(max(np.sum(strays), 0.0) / far) if far > 0.0 else 0.0
-    return growth
+        strays[i] += np.sum(found.error**2 - own)
+        far[i] += np.sum(force[found.rows] ** 2 * rest.strayed(settings[found.rows, i]))
+    return np.asarray(np.sqrt(np.maximum(strays, 0.0) / np.where(far > 0.0, far, np.inf)))
 
 
 def _with_priors(channel: LinearisedChannel, numbers: Sequence[Uncertain]) -> tuple[Mixed, Variances]:
@@ -58,18 +55,16 @@ def _with_priors(channel: LinearisedChannel, numbers: Sequence[Uncertain]) -> tu
     return model, channel.variances._replace(common=common)
 
 
-def _ends(one: Input, values: np.ndarray) -> Iterator[tuple[list[int], Input, np.ndarray]]:
-    """The sides of a condition's ends, the range (of the same condition) without each of them, and the rows (k,) in them.
+def _ends(one: Input, values: np.ndarray) -> Iterator[tuple[Input, np.ndarray]]:
+    """The range of a condition of the test plan without each of its ends, and the rows (k,) in this end.
 
     The formula is nearly symmetric in slips and camber, so both ends of these are one.
     """
+    if one.name not in LEVELS:
+        return
     depth = (0.5 if one.is_held else constants.SPACINGS_OF_AN_END) * one.spacing
-    if one.name in REVERSED | SLIPS:
-        size = np.abs(values)
-        ends = [([0, 1], size > np.max(size) - depth)]
-    else:
-        ends = [([0], values < one.lower + depth), ([1], values > one.upper - depth)]
-    for sides, out in ends if one.name in LEVELS else ():
+    for place in [np.abs(values)] if one.name in REVERSED | SLIPS else [values, -values]:
+        out = place > np.max(place) - depth
         rest = values[~out]
         if len(np.unique(rest)) > 1:
-            yield sides, replace(one, lower=float(rest.min()), upper=float(rest.max())), np.flatnonzero(out)
+            yield replace(one, lower=float(rest.min()), upper=float(rest.max())), np.flatnonzero(out)

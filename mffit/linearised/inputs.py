@@ -55,16 +55,20 @@ class Input:
         out: np.ndarray = self.lower + (np.arcsinh(values / unit) - low) / (high - low) * self.width
         return out
 
-    def beyond(self, values: np.ndarray) -> np.ndarray:
-        """Signed distance (n,) from the tested range, 0 inside and where it is NaN; of the load, the logarithm of the ratio."""
-        near = np.clip(values, self.lower, self.upper)
-        if self.name == "Fz":
-            return np.asarray(np.log(np.maximum(values, SMALLEST_LOAD) / near))
-        return np.asarray(np.nan_to_num(values - near))
+    def strayed(self, values: np.ndarray) -> np.ndarray:
+        """Variance (n,) beyond the range, up to a factor, of a curve whose slope wanders at random; 0 inside and where it is NaN.
 
-    def size(self, values: np.ndarray) -> np.ndarray:
-        """What errors beyond the range are over, (n,): the load itself, else 1."""
-        return np.maximum(values, SMALLEST_LOAD) if self.name == "Fz" else np.ones(len(values))
+        The values at an end and in the middle of the range show the slope there.
+        """
+        end, middle = np.clip(values, self.lower, self.upper), 0.5 * (self.lower + self.upper)
+        beyond = self._apart(values, end)
+        return np.asarray(beyond**2 * (beyond + self._apart(end, middle)))
+
+    def _apart(self, values: np.ndarray, others: np.ndarray | float) -> np.ndarray:
+        """Distances (n,), 0 where they are NaN; of loads, the logarithm of their ratio."""
+        is_load = self.name == "Fz"
+        apart = np.log(np.maximum(values, SMALLEST_LOAD) / others) if is_load else values - others
+        return np.asarray(np.abs(np.nan_to_num(apart)))
 
     @property
     def is_stretched(self) -> bool:

@@ -104,13 +104,12 @@ class SmoothFunctions(ReadOnlyArrays):
         return max(float(whole - np.exp(-squared) * known), 0.0)
 
     def faded(self, settings: np.ndarray, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """:meth:`squared_distance` (n,) of ``settings`` (n, d), and the functions (n, m), which fade with it.
+        """Share (n,) of the model error's variance at ``settings`` (n, d) that the tested ones do not tell, and the functions (n, m).
 
-        The fading model error is exp(-squared/2) of that at the nearest tested settings. The tyre may stray from it ever farther:
-        the variance is ``squared`` times that of the model error.
+        The functions fade with the :meth:`squared_distance` from the tested settings.
         """
         squared = self.squared_distance(settings, lengths)
-        return squared, np.exp(-0.5 * squared)[:, None] * self.columns(settings)
+        return -np.expm1(-squared), np.exp(-0.5 * squared)[:, None] * self.columns(settings)
 
     def squared_distance(self, at: np.ndarray, lengths: np.ndarray) -> np.ndarray:
         """Squared distance (n,) of conditions (n, d) from the nearest tested ones, in lengths; 0 inside the range.

@@ -34,10 +34,10 @@ class _ChannelOnRoad(ReadOnlyArrays):
 
     def told(self, run: Points, force: np.ndarray, slopes: np.ndarray, own_zeros: np.ndarray) -> np.ndarray:
         """Information (r, r) of a run on the errors; ``own_zeros`` (n, j) are changes by zeros that no other run has."""
-        squared, functions = self.linear.functions_at(run)
+        untold, functions = self.linear.functions_at(run)
         seen = np.hstack([functions, slopes]) @ self.root
         _, own = self.linear.foreseen(run, force)
-        missed = np.sqrt(squared) * self.linear.components.missed
+        missed = np.sqrt(untold) * self.linear.components.missed
         shared = Directions.of(np.column_stack([own, own_zeros, missed]) / self.linear.noise)
         white = shared.less(seen / self.linear.noise)
         return np.asarray(white.T @ white)
@@ -77,7 +77,7 @@ class RoadBand:
         free = whole.shape[1] - len(spread)
         of_tyre = np.array([error_of(own) is None for own in self._names])
         tyre = self._simulation.faultless
-        squared, functions = linear.functions_at(road)
+        untold, functions = linear.functions_at(road)
         slopes = np.nan_to_num(tyre.sensitivities(road, self._names, [name])[1][name]) * of_tyre
         forces = np.hstack([functions, slopes]) @ whole
         return _ChannelOnRoad(
@@ -85,7 +85,7 @@ class RoadBand:
             root=whole[:, :free],
             held={self._names[i]: forces[:, free + k] for k, i in enumerate(spread)},
             road=forces[:, :free],
-            unlike=squared * linear.components.missed**2,
+            unlike=untold * linear.components.missed**2,
             largest=float(np.max(np.abs(tyre.readings(road, [name])[name][road.gamma == 0.0]))),
         )
 

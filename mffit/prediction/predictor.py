@@ -15,7 +15,7 @@ from mffit.constants import COVERAGE_FACTOR_95
 from mffit.least_squares import root
 from mffit.linearised import LinearisedChannel, LinearisedFit
 from mffit.linearised.components import Components
-from mffit.linearised.inputs import Input
+from mffit.linearised.inputs import SLIPS, Input
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.numbers import Numbers
 from mffit.points import Points, main_path, make_points
@@ -54,7 +54,7 @@ class MissedChannel(ReadOnlyArrays):
     """(m + k, r): root @ root.T is the covariance of the weights and of changes of coefficients and calibrations."""
     noise: float  #: standard deviation of the noise of a typical reading [unit of the channel]
     size: float  #: rms model error at the readings [unit of the channel]
-    growth: np.ndarray  #: (d, 2) as :func:`mffit.linearised.ends.growths`
+    growth: np.ndarray  #: (d,) as :func:`mffit.linearised.ends.growths`
 
     @property
     def covariance(self) -> np.ndarray:
@@ -63,21 +63,27 @@ class MissedChannel(ReadOnlyArrays):
         return np.asarray(own @ own.T)
 
     def at(
-        self, settings: np.ndarray, slopes: np.ndarray, of_tyre: np.ndarray, left: Remaining
+        self,
+        settings: np.ndarray,
+        force: np.ndarray,
+        slopes: np.ndarray,
+        of_tyre: np.ndarray,
+        left: Remaining,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The model error (n,), the variance of the tyre's force (n,), and the variance of a reading of it (n,).
 
         The estimate keeps the file's coefficients, so it is 0 where the formula describes the tyre exactly; errors of the
-        coefficients count in the variance. ``slopes`` (n, k) are derivatives of the force at the conditions ``settings`` (n,
-        d), ``of_tyre`` (k,) is the mask of the coefficients, ``left`` what remains of the model error where nothing was
-        tested.
+        coefficients count in the variance. ``force`` (n,) and ``slopes`` (n, k) are that of the formula and its derivatives at
+        the conditions ``settings`` (n, d), ``of_tyre`` (k,) is the mask of the coefficients, ``left`` what remains of the model
+        error where nothing was tested.
         """
-        functions = self._functions(settings)[1] * left.share[:, None]
+        untold, functions = self._functions(settings)
+        functions = functions * left.share[:, None]
         rows = self._rows(functions, slopes * of_tyre, slopes)
         mean, reading = (np.sum(one**2, axis=1) for one in rows)
         # Between the lowest tested load and none, where it is zero again, the model error is free as a bridge is.
-        share = 2.0 * left.slip * left.load**2 + left.load * (1.0 - left.load)
-        unlike = share * self.components.missed**2 + self._strays(settings, left.load)
+        share = (2.0 * left.slip + untold) * left.load**2 + left.load * (1.0 - left.load)
+        unlike = share * self.components.missed**2 + self._strays(settings) * force**2
         return functions @ self.missed, mean + unlike, reading + unlike
 
     def mean(self, settings: np.ndarray) -> np.ndarray:
@@ -89,9 +95,9 @@ class MissedChannel(ReadOnlyArrays):
 
         Conditions ``at_zero`` of a slip are so close that readings beside them need not show how the force bends there.
         """
-        squared, functions = self._functions(settings)
+        untold, functions = self._functions(settings)
         ((one, other),) = self._rows(functions, slopes)
-        unlike = np.sum(squared)
+        unlike = np.sum(untold)
         if at_zero:
             unlike = self.smooth.unseen(settings, np.array(self.components.lengths))
         return float(np.sqrt(np.sum((one - other) ** 2) + unlike * self.components.missed**2))
@@ -106,20 +112,10 @@ class MissedChannel(ReadOnlyArrays):
         """As :meth:`SmoothFunctions.faded` at the likely lengths."""
         return self.smooth.faded(settings, np.array(self.components.lengths))
 
-    def _strays(self, settings: np.ndarray, of_load: np.ndarray) -> np.ndarray:
-        """Variance (n,) of the tyre's force because conditions are beyond the tested ranges.
-
-        The model error goes on with an unknown slope, whose standard deviation is that of the model error over its length. The
-        formula strays by :attr:`growth`. The share ``of_load`` (n,) of a model error is left.
-        """
-        out = np.zeros(len(settings))
-        each = zip(self.smooth.inputs, settings.T, self.components.lengths, self.growth, strict=True)
-        for one, at, length, growth in each:
-            beyond = one.beyond(at)
-            slope = self.components.missed / length * of_load * one.size(np.clip(at, one.lower, one.upper))
-            out += (slope * beyond) ** 2
-            out += (growth[np.where(beyond < 0.0, 0, 1)] * one.size(at)) ** 2 * np.abs(beyond) ** 3
-        return out
+    def _strays(self, settings: np.ndarray) -> np.ndarray:
+        """Variance (n,) of the formula's error beyond the tested ranges, over the square of the force."""
+        each = zip(self.smooth.inputs, settings.T, self.growth, strict=True)
+        return sum((growth**2 * one.strayed(at) for one, at, growth in each), np.zeros(len(settings)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -164,9 +160,13 @@ class Predictor(ReadOnlyArrays):
     @property
     def sharpest(self) -> float:
         """Largest tested curvature of the path, to either side [1/m]."""
+        return float(max(map(abs, (self.path, *self._ranges.get("phi_t", ())))))
+
+    @property
+    def _ranges(self) -> dict[str, tuple[float, float]]:
+        """The tested range of every condition that varies for some channel."""
         inputs = itertools.chain.from_iterable(one.smooth.inputs for one in self.channels.values())
-        ends = (end for one in inputs if one.name == "phi_t" for end in (one.lower, one.upper))
-        return max(map(abs, (self.path, *ends)))
+        return {one.name: (one.lower, one.upper) for one in inputs}
 
     def predict(
         self, tyre: Tyre, fitted: Tyre, conditions: pd.DataFrame, channels: Iterable[str] | None = None
@@ -227,12 +227,12 @@ class Predictor(ReadOnlyArrays):
         forces, slopes = fitted.sensitivities(points, self.names, names)
         by_zeros = fitted.sensitivities(points, [*self.setups], names)[1]
         as_read = fitted.with_numbers(self.zeros).readings(points, names)
-        off = self._off_path(fitted, points, slopes)
+        off, slid = self._off_path(fitted, points, slopes), self._slid(fitted, points, forces)
         found = {}
         for name in names:
             channel = self.channels[name]
-            missed, variance, of_reading = self._missed(channel, points, slopes[name])
-            further = np.maximum(off[name] - variance, 0.0)
+            missed, variance, of_reading = self._missed(channel, points, forces[name], slopes[name])
+            further = np.maximum(off[name] - variance, 0.0) + slid[name]
             variance, of_reading = variance + further, of_reading + further
             best = forces[name] + missed
             tight = of_reading + channel.components.run_variance(best) + channel.noise**2
@@ -255,6 +255,22 @@ class Predictor(ReadOnlyArrays):
             there = points.replace(phi_t=tested).select(rows, with_table=False)
             for name, own in fitted.sensitivities(there, self.names, [*slopes])[1].items():
                 out[name][rows] = np.sum(((slopes[name][rows] - own) @ self.stated) ** 2, axis=1)
+        return out
+
+    def _slid(
+        self, fitted: Simulation, points: Points, forces: Mapping[str, np.ndarray]
+    ) -> dict[str, np.ndarray]:
+        """By channel, the variance (n,) of the change that the formula makes to a force beyond the tested slips.
+
+        No reading shows how a tyre goes on once its contact slides: the change may be none, or twice, or any between.
+        """
+        slips = {name: ends for name, ends in self._ranges.items() if name in SLIPS}
+        near = points.replace(**{name: np.clip(getattr(points, name), *ends) for name, ends in slips.items()})
+        rows = np.flatnonzero((near.alpha != points.alpha) | (near.kappa != points.kappa))
+        out = {name: np.zeros(len(points)) for name in forces}
+        if len(rows):
+            for name, force in fitted.readings(near.select(rows, with_table=False), [*forces]).items():
+                out[name][rows] = (forces[name][rows] - force) ** 2 / 3.0
         return out
 
     def stating(self, numbers: Numbers) -> Predictor:
@@ -319,11 +335,8 @@ class Predictor(ReadOnlyArrays):
     def _left(self, channel: MissedChannel, points: Points) -> Remaining:
         """What is left of a channel's model error, by the rule of :class:`tir.correction.Correction`."""
         slip = np.zeros(len(points))
-        ends = {
-            one.name: (one.lower, one.upper) for own in self.channels.values() for one in own.smooth.inputs
-        }
         if "kappa" not in [one.name for one in channel.smooth.inputs]:
-            slip = slip_beyond(points.kappa, points.alpha, *ends.get("kappa", (0.0, 0.0)))
+            slip = slip_beyond(points.kappa, points.alpha, *self._ranges.get("kappa", (0.0, 0.0)))
         return Remaining(np.asarray(share_of_load(points.Fz, max(self.lowest_load, 1e-9))), slip)
 
     def points(self, tyre: Tyre, conditions: pd.DataFrame) -> Points:
@@ -347,7 +360,7 @@ class Predictor(ReadOnlyArrays):
         )
 
     def _missed(
-        self, channel: MissedChannel, points: Points, slopes: np.ndarray
+        self, channel: MissedChannel, points: Points, force: np.ndarray, slopes: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Model error (n,), variance of the force (n,) and of a reading (n,), averaged over conditions that are not stated.
 
@@ -355,7 +368,7 @@ class Predictor(ReadOnlyArrays):
         """
         left = self._left(channel, points)
         found = [
-            channel.at(settings, slopes, self._of_tyre, left)
+            channel.at(settings, force, slopes, self._of_tyre, left)
             for settings in _settings(points, channel.smooth.inputs)
         ]
         means, variances, readings = (np.array(own) for own in zip(*found, strict=True))

@@ -181,7 +181,7 @@ def _channel(own: dict[str, Any], coefficients: int) -> MissedChannel:
         root=_array(own["root"], len(missed) + coefficients),
         noise=float(own["noise"]),
         size=float(own["size"]),
-        growth=np.array(own["growth"], dtype=float).reshape(len(inputs), 2),
+        growth=np.array(own["growth"], dtype=float).reshape(len(inputs)),
     )
 
 

@@ -184,6 +184,27 @@ def test_the_load_range_ends_before_the_grip_is_lost(tyre):
     assert found["FZMIN"] == pytest.approx(90.0)
 
 
+@pytest.mark.parametrize("off", [{"QBZ2": 1.7, "QBZ3": -4.9}, {"QBZ3": -3.0}])
+def test_the_load_range_ends_where_the_moment_leaves_the_slope_over_the_tested_loads(tyre, off):
+    """Slope factors that fall with the square of the load: at 3150 N the largest moment would be twice that of the sound tyre."""
+    sound = tyre.replace(PDY2=0.0, PEY2=0.0, PEY4=0.0, PEY5=0.0, PDY3=0.0)
+    model = sound.replace(**off)
+
+    def arm(Fz):
+        return (
+            max(abs(model(Fz, alpha=x).Mz - model(Fz, alpha=-x).Mz) for x in np.linspace(0.0, 0.14, 57)) / Fz
+        )
+
+    def above_the_line(Fz):
+        return (arm(Fz) - arm(2100.0) - (arm(2100.0) - arm(900.0)) / 1200.0 * (Fz - 2100.0)) / arm(2100.0)
+
+    found = plausible_ranges(model.values, TESTED, turn_slip=False)
+    assert found["FZMAX"] < 3150.0
+    assert above_the_line(found["FZMAX"]) < 0.06  # 0.05 on the grid of sideslips
+    assert above_the_line(found["FZMAX"] + 0.25 * 1050.0) > 0.04
+    assert found["FZMIN"] == pytest.approx(90.0)
+
+
 def off_the_line(c, p):
     """By how much c(p) has changed since 262.5 kPa beyond what the line from c(212.5 kPa) allows, over c(262.5 kPa), by hand."""
     low, end = c(212.5e3), c(262.5e3)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mffit.linearised.inputs import along, inputs_of, settings_of, swept_of
+from mffit.linearised.inputs import Input, along, inputs_of, settings_of, swept_of
 from mffit.points import Points, make_points
 
 UP = np.linspace(-0.1, 0.1, 21)
@@ -121,3 +121,20 @@ def test_a_disc_was_tested_on_the_other_side_too():
     assert not any(one.mirrored for one in inputs_of(programme()))  # a straight path is its own mirror image
     both = np.repeat([0.75, -0.75], 63)
     assert {one.name for one in inputs_of(programme(phi_t=both)) if one.mirrored} == set(ends)
+
+
+@pytest.mark.parametrize(
+    ("name", "lower", "upper"), [("alpha", -0.6, 0.0), ("Fz", 2.0 * np.exp(-0.3) - 1.0, 1.0)]
+)
+def test_beyond_a_range_a_curve_strays_as_one_whose_slope_wanders_at_random(name, lower, upper):
+    """Drawn curves, each continued by the straight line through its values at the end and in the middle of the range."""
+    step, n = 0.01, 91
+    slope = np.cumsum(np.random.default_rng(3).standard_normal((4000, n)), axis=1) * np.sqrt(step)
+    curve = np.cumsum(slope, axis=1) * step
+    one, at = Input(name, lower, upper, 0.1), np.array([0.05, 0.15, 0.3])
+    end, before = curve[:, 60:61], curve[:, 30:31]
+    error = curve[:, [65, 75, 90]] - end - (end - before) / 0.3 * at
+    found = one.strayed(upper + at if name == "alpha" else upper * np.exp(at))
+    drawn = np.mean(error**2, axis=0)
+    assert found / found[-1] == pytest.approx(drawn / drawn[-1], rel=0.1)
+    assert not np.any(one.strayed(np.array([lower, 0.5 * (lower + upper), upper, np.nan])))

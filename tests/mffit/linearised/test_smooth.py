@@ -66,8 +66,8 @@ def test_beyond_the_tested_range_the_functions_stay_and_fade():
     assert np.array_equal(columns[1], columns[2])
     assert not np.allclose(columns[0], columns[1])
     settings, lengths = np.array([inside, end, beyond, [-0.3, 2000.0]]), np.array([0.1, 500.0])
-    distance, faded = smooth.faded(settings, lengths)
-    assert distance == pytest.approx([0.0, 0.0, 2.0, 1.0])
+    untold, faded = smooth.faded(settings, lengths)
+    assert untold == pytest.approx(1.0 - np.exp([0.0, 0.0, -2.0, -1.0]))
     assert faded[2] == pytest.approx(columns[2] * np.exp(-1.0))
 
 
@@ -106,8 +106,8 @@ def test_a_condition_that_is_not_stated_is_averaged_over_its_usual_values():
     smooth, alpha = SmoothFunctions.over(inputs), np.linspace(-0.1, 0.1, 7)
     each = [smooth.columns(np.column_stack([alpha, np.full(7, T)])) for T in usual]
     unstated = np.column_stack([alpha, np.full(7, np.nan)])
-    beyond, functions = smooth.faded(unstated, np.array([0.05, 8.0]))
-    assert np.all(beyond == 0.0)
+    untold, functions = smooth.faded(unstated, np.array([0.05, 8.0]))
+    assert np.all(untold == 0.0)
     assert functions == pytest.approx(np.mean(each, axis=0), abs=1e-12)
 
 

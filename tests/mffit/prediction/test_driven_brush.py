@@ -9,6 +9,8 @@ import tomli_w
 from brush import SHORT, Brush
 from conftest import Built, build
 
+from tir import TirWarning
+
 TYRE = Brush(drive=1.2, carcass=2e5)
 FX_ZERO = -14.0
 """Zero of the rig [N], 0.7 of its declared uncertainty."""
@@ -63,3 +65,17 @@ def test_below_the_lowest_load_a_prediction_says_how_little_is_known(driven, Fz)
     found = driven.predict(alpha_deg=alpha, gamma_deg=0.0, Fz_N=Fz, kappa=kappa)
     off = found["Fx_best_N"] - forces(alpha, Fz, kappa)["Fx_N"]
     assert np.mean(np.abs(off) < 1.96 * found["u_Fx_best_N"]) > 0.9
+
+
+def test_beyond_the_tested_slip_the_change_of_the_formula_is_no_knowledge(driven):
+    """The force is at its peak where the sweeps end, and bends away as the formula does not foresee."""
+    random = np.random.default_rng(2)
+    alpha, side = random.uniform(-5.0, 5.0, 300), random.choice([-1.0, 1.0], 300)
+    kappa = side * random.uniform(0.16, 0.25, 300)
+    with pytest.warns(TirWarning, match="kappa is outside the range"):
+        found = driven.predict(alpha_deg=alpha, gamma_deg=0.0, Fz_N=1700.0, kappa=kappa)
+    for name in ("Fx", "Fy"):
+        off = np.abs(found[f"{name}_best_N"] - forces(alpha, 1700.0, kappa)[f"{name}_N"])
+        half = 1.96 * found[f"u_{name}_best_N"]
+        assert np.mean(off < half) > 0.9
+        assert np.sqrt(np.mean(half**2) / np.mean(off**2)) < 6.0
