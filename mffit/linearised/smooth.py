@@ -104,7 +104,7 @@ class SmoothFunctions(ReadOnlyArrays):
         return max(float(whole - np.exp(-squared) * known), 0.0)
 
     def faded(self, settings: np.ndarray, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Share (n,) of the model error's variance at ``settings`` (n, d) that the tested ones do not tell, and the functions (n, m).
+        """Share (n,) of the model error's variance at ``settings`` (n, d) that tested ones do not tell, and the functions (n, m).
 
         The functions fade with the :meth:`squared_distance` from the tested settings.
         """
