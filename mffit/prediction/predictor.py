@@ -55,6 +55,7 @@ class MissedChannel(ReadOnlyArrays):
     noise: float  #: standard deviation of the noise of a typical reading [unit of the channel]
     size: float  #: rms model error at the readings [unit of the channel]
     growth: np.ndarray  #: (d,) as :func:`mffit.linearised.ends.growths`
+    is_proven: bool  #: whether the model error is more than noise and scatter of runs
 
     @property
     def covariance(self) -> np.ndarray:
@@ -262,14 +263,15 @@ class Predictor(ReadOnlyArrays):
     ) -> dict[str, np.ndarray]:
         """By channel, the variance (n,) of the change that the formula makes to a force beyond the tested slips.
 
-        No reading shows how a tyre goes on once its contact slides: the change may be none, or twice, or any between.
+        A tyre with a proven model error may go on otherwise: the change may be none, or twice, or any between.
         """
         slips = {name: ends for name, ends in self._ranges.items() if name in SLIPS}
         near = points.replace(**{name: np.clip(getattr(points, name), *ends) for name, ends in slips.items()})
         rows = np.flatnonzero((near.alpha != points.alpha) | (near.kappa != points.kappa))
         out = {name: np.zeros(len(points)) for name in forces}
-        if len(rows):
-            for name, force in fitted.readings(near.select(rows, with_table=False), [*forces]).items():
+        unlike = [name for name in forces if self.channels[name].is_proven]
+        if len(rows) and unlike:
+            for name, force in fitted.readings(near.select(rows, with_table=False), unlike).items():
                 out[name][rows] = (forces[name][rows] - force) ** 2 / 3.0
         return out
 
@@ -437,6 +439,7 @@ def predictor(
             own.noise,
             own.size,
             left.growths[name],
+            own.is_proven,
         )
         for name, own in left.channels.items()
     }

@@ -57,6 +57,7 @@ def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
                 "noise": own.noise,
                 "size": own.size,
                 "growth": own.growth.tolist(),
+                "proven": own.is_proven,
             }
             for name, own in found.channels.items()
         },
@@ -182,6 +183,7 @@ def _channel(own: dict[str, Any], coefficients: int) -> MissedChannel:
         noise=float(own["noise"]),
         size=float(own["size"]),
         growth=np.array(own["growth"], dtype=float).reshape(len(inputs)),
+        is_proven=bool(own["proven"]),
     )
 
 

@@ -22,7 +22,7 @@ def known(names, root):
     """What is known of a tyre of the formula without noise: the covariance of its coefficients is root times its transpose."""
     root = np.vstack([np.zeros((1, root.shape[1])), root])
     nothing = Components(0.0, (), 0.0, 0.0, 0.0, 0.3, 0.0)
-    own = MissedChannel(SmoothFunctions.over(()), nothing, np.zeros(1), root, 0.0, 0.0, np.zeros((0, 2)))
+    own = MissedChannel(SmoothFunctions.over(()), nothing, np.zeros(1), root, 0.0, 0.0, np.zeros(0), False)
     return Predictor(0.0, names, {"Fx": own, "Fy": own}, {}, {})
 
 
