@@ -15,7 +15,7 @@ from mffit.fit.plan import FitPlan
 from mffit.fit.problem import FitProblem
 from mffit.fit.same_curve import with_expected_signs
 from mffit.fit.stages import OF_CAMBER_OR_SPIN
-from mffit.fit.start import SHAPES
+from mffit.fit.start import SHAPES_OF_FX, SHAPES_OF_MZ
 from mffit.fit.told import told_by_weights
 from mffit.least_squares import POLISH_TOLERANCE, FreeNumber, Solution, solve
 from mffit.linearised import LinearisedFit
@@ -35,32 +35,33 @@ def first_fit(problem: FitProblem, start: Mapping[str, float], plan: FitPlan) ->
     _require_enough_points(problem.points, plan.free)
     problem = problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)})
     part = problem.reweighted().thinned(next(_strides(len(problem.points))))
-    for without in (OF_CAMBER_OR_SPIN, ()):
-        numbers = [n for n in plan.numbers(part) if n.name not in without]
-        near = solve(part.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
-        part = part.with_values(near.values)
+    ends = []
+    for shape in ({}, *(SHAPES_OF_FX if "PCX1" in plan.free else ())):
+        begin = part.with_values({n: plan.hand.inside(n, x) for n, x in shape.items() if n in plan.free})
+        numbers = [n for n in plan.numbers(begin) if n.name not in OF_CAMBER_OR_SPIN]
+        found = solve(begin.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
+        ends.append(found)
+    best = part.with_values(min(ends, key=lambda end: end.cost).values)
+    numbers = plan.numbers(best)
+    near = solve(best.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
     return _lowest(polish(_approached(problem.with_values(near.values), plan), plan), problem, plan)
 
 
 def _lowest(found: Fitted, stated: FitProblem, plan: FitPlan) -> Fitted:
-    """The fit of the lowest minimum of each channel; ``found`` itself if it has all of them.
+    """The fit of the lowest minimum of Mz; ``found`` itself if it has it.
 
-    The weights are those of ``found``: with those at the starting values the minima differ little. Each channel is searched by
-    itself, with all other numbers as found.
+    Its coefficients are searched with all other numbers, and the weights, as found: with the weights at the starting values the
+    minima differ little.
     """
     here = replace(found.problem.thinned(next(_strides(len(found.problem.points)))), radii=())
-    lower: dict[str, float] = {}
-    for channel, shapes in SHAPES.items():
-        names = [n for n in plan.free if BY_NAME[n].channel == channel]
-        alone = replace(here, sigma={name: u for name, u in here.sigma.items() if name == channel})
-        ends = [_end(alone, names, plan, shape) for shape in ({}, *shapes) if alone.sigma]
-        best = min(ends, key=lambda end: end.cost, default=None)
-        if best is not None and best.cost < (1.0 - constants.STAGE_TOLERANCE) * ends[0].cost:
-            lower |= best.values
-    if not lower:
+    alone = replace(here, sigma={name: u for name, u in here.sigma.items() if name == "Mz"})
+    names = [name for name in plan.free if BY_NAME[name].channel == "Mz"]
+    first, *others = (_end(alone, names, plan, shape) for shape in ({}, *SHAPES_OF_MZ))
+    best = min(others, key=lambda end: end.cost)
+    if best.cost > (1.0 - constants.STAGE_TOLERANCE) * first.cost:
         return found
     values = {n.name: found.problem.value(n.name) for n in found.numbers}
-    return polish(stated.with_values({**values, **lower}), plan)
+    return polish(stated.with_values({**values, **best.values}), plan)
 
 
 def _end(problem: FitProblem, names: Sequence[str], plan: FitPlan, begin: Mapping[str, float]) -> Solution:

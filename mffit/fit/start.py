@@ -30,13 +30,10 @@ NONZERO_STARTS = {
     "RVY6": 10.0,
 }
 """Starting values for coefficients at which a search would be stuck at zero, because all derivatives vanish there."""
-SHAPES: Mapping[str, Sequence[Mapping[str, float]]] = {
-    "Fx": ({"PCX1": 1.2, "PEX1": -0.5}, {"PCX1": 1.8, "PEX1": 0.4}),
-    "Fy": ({"PCY1": 1.15, "PEY1": -3.0}, {"PCY1": 1.6, "PEY1": 0.5}),
-    "Mz": ({"QCZ1": 1.1, "QEZ1": -6.0}, {"QCZ1": 1.7, "QEZ1": 0.8}),
-}
-"""Further starting values of each channel, because shape and curvature factor make two minima of the sum of squares of its curve:
-a late and round peak, and an early and sharp one."""
+SHAPES_OF_FX: Sequence[Mapping[str, float]] = ({"PCX1": 1.2, "PEX1": -0.5}, {"PCX1": 1.8, "PEX1": 0.4})
+"""Further starting values of the longitudinal force, because its sum of squares can have several minima."""
+SHAPES_OF_MZ: Sequence[Mapping[str, float]] = ({"QCZ1": 1.1, "QEZ1": -6.0}, {"QCZ1": 1.7, "QEZ1": 0.8})
+"""The same for the aligning moment: there is a minimum on either side of QEZ1 = 0."""
 
 
 def starting_values(
