@@ -9,10 +9,12 @@ import numpy as np
 import pandas as pd
 
 from mffit.csv_tables import csv_text
-from mffit.errors import InputError, shortened
+from mffit.errors import InputError, meant, shortened
 from mffit.quantities import CONDITIONS
-from mffit.sweeps.channels import BY_NAME
+from mffit.sweeps.about import simplified
+from mffit.sweeps.channels import BY_NAME, NAMED, nearest_channel
 from mffit.sweeps.columns import text_of
+from mffit.sweeps.constants import LIKENESS_OF_UNUSED_HEADING
 from mffit.sweeps.formats import read
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import UnknownUnitError, converted
@@ -29,7 +31,7 @@ UNITS = {**{name: CONDITIONS[name].unit for name in (*REQUIRED, *OPTIONAL) if na
 def read_conditions(path: Path) -> pd.DataFrame:
     """The conditions (n,) of a file, in its order and in the units of the column names; other columns are kept unchanged.
 
-    Raises InputError if a required column is missing, or a value is not a number or is impossible; names file, line and column.
+    Raises InputError if a required column is missing, a column names a condition otherwise, or a value is not a number or is impossible; names file, line and column.
     """
     raw = read(path)
     return checked(pd.DataFrame({heading: raw.column(heading) for heading in raw.headings}), raw)
@@ -41,6 +43,12 @@ def checked(table: pd.DataFrame, raw: RawTable | None = None) -> pd.DataFrame:
     ``raw`` is the file of the table, which may state units. Raises as :func:`read_conditions`.
     """
     file, line = (None, None) if raw is None else (raw.path, raw.heading_line)
+    for heading in table:
+        name = _meant(str(heading))
+        if name not in ("", *table):
+            otherwise = f"if it is {name}, rename it and write it in {UNITS[name]}; else give it another name"
+            sentence = f"is no column of conditions; {otherwise}"
+            raise InputError(sentence, file=file, line=line, column=str(heading))
     missing = [name for name in REQUIRED if name not in table]
     if missing:
         sentence = f"has no column {missing[0]}; conditions need {', '.join(REQUIRED)} and may have {', '.join(OPTIONAL)}"
@@ -50,6 +58,15 @@ def checked(table: pd.DataFrame, raw: RawTable | None = None) -> pd.DataFrame:
         raise InputError("there are two columns of this name; rename one", column=str(name))
     used = {name: _numbers(table[name], name, raw) for name in UNITS if name in table}
     return table.assign(**used)
+
+
+def _meant(heading: str) -> str:
+    """The condition of a prediction that a heading names otherwise: as laboratories do, in another unit, or misspelt; or ""."""
+    known = NAMED.get(simplified(heading))
+    name = known.name if known else nearest_channel(heading, likeness=LIKENESS_OF_UNUSED_HEADING)
+    return (
+        name if name in UNITS else PATH if meant(heading, [PATH], likeness=LIKENESS_OF_UNUSED_HEADING) else ""
+    )
 
 
 def _numbers(cells: pd.Series, name: str, raw: RawTable | None) -> np.ndarray:

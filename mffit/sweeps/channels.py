@@ -8,6 +8,7 @@ from importlib import resources
 from mffit.constants import LIKENESS_OF_MISSPELT
 from mffit.errors import meant
 from mffit.sweeps.about import simplified
+from mffit.sweeps.units import has_dimension
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +27,11 @@ class Channel:
     words: str  #: pattern of the words by which a heading names it
     words_of_kind: str  #: pattern of the words of its kind, which a heading without a unit has as well
     description: str
+
+    @property
+    def stem(self) -> str:
+        """The name without its unit, in lower case."""
+        return (self.name.rpartition("_")[0] or self.name).lower()
 
 
 def _read() -> tuple[Channel, ...]:
@@ -57,15 +63,19 @@ def nearest_heading(channel: Channel, headings: Iterable[str]) -> str:
         return named[0]
     written = {heading.lower(): heading for heading, one in known.items() if one is None}
     near = meant(channel.name.lower(), written)
-    stem = channel.name.rpartition("_")[0].lower() or channel.name.lower()
-    starts = [heading for low, heading in written.items() if low.startswith(stem)]
+    starts = [heading for low, heading in written.items() if low.startswith(channel.stem)]
     return written[near] if near else starts[0] if starts else ""
 
 
 def nearest_channel(heading: str, *, likeness: float) -> str:
-    """The channel whose name is most similar to a heading; "" if all similarities are below ``likeness``, from 0 to 1."""
-    lower = {name.lower(): name for name in BY_NAME}
-    return lower.get(meant(heading.lower(), lower, likeness=likeness), "")
+    """The channel that a heading names in another unit, or else the one whose name is most similar.
+
+    It is "" if all similarities are below ``likeness``, from 0 to 1.
+    """
+    stem, _, unit = heading.rpartition("_")
+    lower = {channel.name.lower(): channel.name for channel in SWEEP_CHANNELS}
+    in_other_unit = (c.name for c in SWEEP_CHANNELS if c.stem == stem.lower() and has_dimension(unit, c.unit))
+    return next(in_other_unit, "") or lower.get(meant(heading.lower(), lower, likeness=likeness), "")
 
 
 def unknown_channel(name: str) -> str:

@@ -24,7 +24,7 @@ from mffit.sweeps.raw_table import (
     with_decimal_point,
     with_values,
 )
-from mffit.sweeps.units import UnknownUnitError, converted, factor, is_unit, spelt
+from mffit.sweeps.units import UnknownUnitError, converted, has_dimension, is_unit, spelt
 from tir.frozen import ReadOnlyArrays
 
 DIRECTIONS = {"forward": 1, "backward": -1, "1": 1, "+1": 1, "-1": -1}
@@ -228,11 +228,7 @@ def _unit_of(channel: Channel, unit: str) -> str | None:
     """A unit that a file states, "" if it is none; None if it is one of another quantity than the channel's."""
     if not (unit and is_unit(unit)):
         return ""
-    try:
-        factor(unit, channel.unit)
-    except UnknownUnitError:
-        return None
-    return unit
+    return unit if has_dimension(unit, channel.unit) else None
 
 
 def _missing(raw: RawTable, channels: Sequence[Channel]) -> InputError:
@@ -460,11 +456,13 @@ def _credible(source: _Source, u: np.ndarray, readings: np.ndarray) -> np.ndarra
 
 
 def _misspelt(raw: RawTable, extras: Mapping[str, Cells], found: Mapping[str, object]) -> list[str]:
-    """Warnings about unused headings that resemble the name of a missing channel."""
+    """Warnings about unused headings that resemble the name of a missing channel, or name it in another unit."""
     sentences = []
     for heading, cells in extras.items():
         near = nearest_channel(heading, likeness=constants.LIKENESS_OF_UNUSED_HEADING)
         is_constant = isinstance(cells, np.ndarray) and bool(np.all(cells == cells[0]))
         if near and near not in found and not is_constant:
-            sentences.append(f'{raw.path}: column "{heading}" is not used; if it is {near}, rename it')
+            said = f'column "{heading}" is not used; if it is {near}, rename it'
+            unit = BY_NAME[near].unit
+            sentences.append(f"{raw.path}: {said}{f' and write it in {unit}' if unit else ''}")
     return sentences

@@ -62,6 +62,15 @@ def factor(unit: str, house: str) -> float:
     return float(converted(np.ones(1), unit, house)[0])
 
 
+def has_dimension(unit: str, target: str) -> bool:
+    """Whether values in ``unit`` can be converted to ``target``."""
+    try:
+        factor(unit, target)
+    except UnknownUnitError:
+        return False
+    return True
+
+
 def is_unit(text: str) -> bool:
     """Whether a text names a unit, in pint's spelling or a laboratory's; words for "dimensionless" count."""
     import pint

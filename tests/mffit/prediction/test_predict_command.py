@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 from pathlib import Path
 from typing import Any
@@ -245,6 +246,47 @@ def test_a_mistake_in_a_table_names_its_row(foreign: Built, change: dict[str, An
 def test_a_column_twice(foreign: Built):
     with pytest.raises(InputError, match="column Fz_N: there are two columns of this name"):
         mffit.predict(foreign.folder, pd.concat([GOOD, GOOD[["Fz_N"]]], axis=1))
+
+
+@pytest.mark.parametrize(
+    ("heading", "meant", "unit"),
+    [
+        ("p_psi", "p_kPa", "kPa"),
+        ("Pressure", "p_kPa", "kPa"),
+        ("V_kmh", "V_mps", "m/s"),
+        ("T_K", "T_degC", "degC"),
+        ("kapa", "kappa", "-"),
+        ("kappa_percent", "kappa", "-"),
+        ("phi_per_m", "phi_t_per_m", "1/m"),
+        ("Fz_kN", "Fz_N", "N"),
+        ("gamma_rad", "gamma_deg", "deg"),
+        ("Alpha_deg", "alpha_deg", "deg"),
+    ],
+)
+def test_a_condition_in_another_unit_or_misspelt_is_not_ignored(foreign: Built, here, heading, meant, unit):
+    """It would be predicted at the nominal value, without a word."""
+    table = GOOD.drop(columns=meant, errors="ignore").assign(**{heading: 0.1})
+    sentence = f"is no column of conditions; if it is {meant}, rename it and write it in {unit}; else give it another name"
+    with pytest.raises(InputError, match=re.escape(f"column {heading}: {sentence}")):
+        mffit.predict(foreign.folder, table)
+    with pytest.raises(InputError, match=re.escape(f"conditions.csv:1: column {heading}: {sentence}")):
+        mffit.predict(foreign.folder, written(table))
+
+
+def test_columns_of_another_kind_are_repeated(foreign: Built):
+    """Also a condition that is there twice, in another unit."""
+    others = {
+        "note": "wet",
+        "id": 7,
+        "Fx_N": 3.0,
+        "My_Nm": 1.0,
+        "Fz_model_N": 5.0,
+        "t_s": 1.0,
+        "p_kPa": 200.0,
+        "p_psi": 29.0,
+    }
+    found = mffit.predict(foreign.folder, GOOD.assign(**others))
+    assert {name: found[name][0] for name in others} == others
 
 
 @pytest.mark.parametrize(
