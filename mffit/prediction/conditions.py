@@ -31,7 +31,8 @@ UNITS = {**{name: CONDITIONS[name].unit for name in (*REQUIRED, *OPTIONAL) if na
 def read_conditions(path: Path) -> pd.DataFrame:
     """The conditions (n,) of a file, in its order and in the units of the column names; other columns are kept unchanged.
 
-    Raises InputError if a required column is missing, a column names a condition otherwise, or a value is not a number or is impossible; names file, line and column.
+    Raises InputError, which names file, line and column, if a required column is missing, a column names a condition otherwise,
+    or a value is not a number or is impossible.
     """
     raw = read(path)
     return checked(pd.DataFrame({heading: raw.column(heading) for heading in raw.headings}), raw)

@@ -146,6 +146,7 @@ class Predictor(ReadOnlyArrays):
     """Fitted zeros of the rig, each the largest of all set-ups; they are part of a reading."""
     beside: Mapping[str, float]
     """Effects of the tyre for which a property file has no coefficient, and its temperature terms."""
+    V_range: tuple[float, float]  #: tested speeds [m/s]
     T_range: tuple[float, float] | None = None  #: tested temperatures [degC], to which the terms are held
     lowest_load: float = 0.0  #: lowest tested load [N], below which the model error falls with the load
     setups: Mapping[str, float] = field(default_factory=dict)
@@ -444,10 +445,11 @@ def predictor(
         for name, own in left.channels.items()
     }
     names = tuple(left.numbers[i].name for i in kept)
+    V_range = float(np.min(points.V)), float(np.max(points.V))
     beside = {name: rig[name] for name in (*(error.name for error in BESIDE), *terms) if name in rig}
     T_range = (float(np.nanmin(points.T)), float(np.nanmax(points.T))) if terms else None
     return Predictor(
-        main_path(points), names, channels, zeros, beside, T_range, float(np.min(points.Fz)), setups
+        main_path(points), names, channels, zeros, beside, V_range, T_range, float(np.min(points.Fz)), setups
     )
 
 

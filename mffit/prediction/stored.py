@@ -19,6 +19,7 @@ from mffit.linearised.components import Components
 from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
+from mffit.points.levels import SPEED
 from mffit.points.points import of_si
 from mffit.prediction.conditions import PATH, checked, read_conditions
 from mffit.prediction.predictor import MissedChannel, Predictor
@@ -44,6 +45,7 @@ def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
         "zeros": dict(found.zeros),
         "beside": dict(found.beside),
         "setups": dict(found.setups),
+        "V_range_mps": found.V_range,
         "T_range_degC": found.T_range,
         "lowest_load_N": found.lowest_load,
         "stated": _text(found.stated),
@@ -116,7 +118,7 @@ def predict(folder: str | Path, conditions: str | Path | pd.DataFrame) -> pd.Dat
     Warns
     -----
     TirWarning
-        A condition is outside the ranges of the property file.
+        A condition is outside the ranges of the property file, or a speed outside the tested ones.
     """
     known, tyre, fitted = load(Path(folder))
     table = checked(conditions) if isinstance(conditions, pd.DataFrame) else read_conditions(Path(conditions))
@@ -128,7 +130,7 @@ def predict(folder: str | Path, conditions: str | Path | pd.DataFrame) -> pd.Dat
 def _beyond_ranges(known: Predictor, points: Points, tyre: Tyre) -> Iterator[str]:
     """A sentence for each condition that leaves the range of the property file: force and uncertainty are extrapolated there.
 
-    Temperature and path curvature have no range in a file; those of the test count. Temperature is held to its ends.
+    Speed, temperature and path curvature have no range in a file; those of the test count. Temperature is held to its ends.
     """
     ranges = {
         name: tuple(tyre[key] * of_si(name) for key in keys)
@@ -136,6 +138,7 @@ def _beyond_ranges(known: Predictor, points: Points, tyre: Tyre) -> Iterator[str
     }
     of_file = "the range of the property file", "no reading supports force or uncertainty there"
     words = dict.fromkeys(ranges, of_file)
+    ranges["V_mps"], words["V_mps"] = known.V_range, ("the tested speeds", of_file[1])
     if known.T_range is not None:
         ranges["T_degC"] = known.T_range
         words["T_degC"] = "the tested temperatures", "the force is that at the nearest of them"
@@ -144,12 +147,12 @@ def _beyond_ranges(known: Predictor, points: Points, tyre: Tyre) -> Iterator[str
         words[PATH] = "the tested path curvature", of_file[1]
     for name, (low, high) in ranges.items():
         values = points.phi_t if name == PATH else points.condition(name)
-        slack = 1e-6 * (high - low)
+        slack = SPEED.tolerance * high if name == "V_mps" else 1e-6 * (high - low)
         rows = np.flatnonzero((values < low - slack) | (values > high + slack))
         if len(rows):
             what, so = words[name]
             yield (
-                f"{name} is outside {what}, {low:.4g} to {high:.4g}, in {len(rows)} of "
+                f"{name} is outside {what}, {' to '.join(dict.fromkeys((f'{low:.4g}', f'{high:.4g}')))}, in {len(rows)} of "
                 f"{counted(len(points), 'condition')}, first in row {rows[0] + 1}: {so}"
             )
 
@@ -162,6 +165,7 @@ def _predictor(content: dict[str, Any]) -> Predictor:
         path=float(content["phi_t_per_m"]),
         names=names,
         channels={name: _channel(own, len(names)) for name, own in channels.items()},
+        V_range=(float(content["V_range_mps"][0]), float(content["V_range_mps"][1])),
         T_range=None if T_range is None else (float(T_range[0]), float(T_range[1])),
         lowest_load=float(content["lowest_load_N"]),
         stated=_array(content["stated"], len(names)),

@@ -23,7 +23,7 @@ def known(names, root):
     root = np.vstack([np.zeros((1, root.shape[1])), root])
     nothing = Components(0.0, (), 0.0, 0.0, 0.0, 0.3, 0.0)
     own = MissedChannel(SmoothFunctions.over(()), nothing, np.zeros(1), root, 0.0, 0.0, np.zeros(0), False)
-    return Predictor(0.0, names, {"Fx": own, "Fy": own}, {}, {})
+    return Predictor(0.0, names, {"Fx": own, "Fy": own}, {}, {}, (16.0, 16.0))
 
 
 def found(pressures, known_to=U, **changes):

@@ -67,9 +67,9 @@ def test_conditions_come_back_with_the_columns_of_every_channel(foreign: Built, 
 def test_the_plain_force_is_that_of_the_property_file(foreign: Built):
     import tir
 
-    found = foreign.predict(alpha_deg=[3.0], gamma_deg=[2.0], Fz_N=[1500.0], p_kPa=[210.0], V_mps=[8.0])
+    found = foreign.predict(alpha_deg=[3.0], gamma_deg=[2.0], Fz_N=[1500.0], p_kPa=[210.0], V_mps=[9.5])
     tyre = tir.read(foreign.folder / "brush.tir")
-    forces = tyre(1500.0, alpha=np.radians(3.0), gamma=np.radians(2.0), p=210e3, Vx=8.0)
+    forces = tyre(1500.0, alpha=np.radians(3.0), gamma=np.radians(2.0), p=210e3, Vx=9.5)
     assert found.Fy_N[0] == pytest.approx(forces.Fy)
     assert found.Mz_Nm[0] == pytest.approx(forces.Mz)
 
@@ -163,6 +163,18 @@ def test_conditions_outside_the_ranges_of_the_file_are_said(foreign: Built, here
     written(GOOD)
     assert run(foreign.folder, "conditions.csv", "--out", "found.csv") == 0
     assert "outside" not in capsys.readouterr().err
+
+
+def test_speeds_that_were_not_tested_are_said(foreign: Built, here, capsys):
+    """Grip falls with speed, which most files have no term for; the control of a rig is no other speed."""
+    V = foreign.result.prediction.V_range[0]
+    written(GOOD.assign(V_mps=[V, 1.05 * V, 2.0 * V]))
+    assert run(foreign.folder, "conditions.csv", "--out", "found.csv") == 0
+    said = capsys.readouterr().err
+    assert (
+        f"V_mps is outside the tested speeds, {V:g}, in 1 of 3 conditions, first in row 3: no reading supports"
+        in said
+    )
 
 
 @pytest.mark.parametrize("ending", [".csv", ".csv.gz", ".txt", ".xlsx", ".parquet", ".mat"])
