@@ -18,6 +18,7 @@ from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of, project_of
 from mffit.points import Points
 from mffit.points.stretch import StretchNote, stretch_table
+from mffit.prediction import Predictor
 from mffit.quantities import COMPARED, column
 from mffit.results import BuildResult
 from mffit.suspicion import marks
@@ -152,7 +153,10 @@ def write_members(result: BuildResult, out: Path) -> None:
     write_csv(pd.DataFrame(rows), folder / INDEX)
 
 
-def numbers(tyre: Tyre, *, turn_slip: bool, known: Numbers | None = None) -> dict[str, Quantity]:
+def numbers(
+    tyre: Tyre, *, turn_slip: bool, known: Numbers | None = None, predictor: Predictor | None = None
+) -> dict[str, Quantity]:
     """The main characteristics at nominal load and pressure on a straight path; SI units, ISO signs."""
-    found = characteristics(tyre, float(tyre["FNOMIN"]), turn_slip=turn_slip, known=known)
+    load = float(tyre["FNOMIN"])
+    found = characteristics(tyre, load, turn_slip=turn_slip, known=known, predictor=predictor)
     return {key: found[key] for key in NUMBERS if key in found}

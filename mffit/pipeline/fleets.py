@@ -3,13 +3,14 @@
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
-from mffit import as_json
+from mffit import as_json, prediction
 from mffit import fleet as combining
 from mffit.comparison import PEAKS
 from mffit.constants import FEWEST
@@ -132,7 +133,10 @@ def _plainly_named(found: Sequence[Numbers]) -> list[Numbers]:
 
 def _row(specimen: Specimen, rig: int, together: TyreEstimate | None) -> Row:
     """A build with its own estimate, and that ``together`` with the other tyres of its rig."""
-    of_file = numbers(specimen.tyre, turn_slip=specimen.on_disc, known=specimen.numbers)
+    predictor = None
+    with suppress(InputError):  # a build of an earlier version
+        predictor, _, _ = prediction.load(specimen.folder)
+    of_file = numbers(specimen.tyre, turn_slip=specimen.on_disc, known=specimen.numbers, predictor=predictor)
     stated = {key: specimen.at_least_stated(key, q) for key, q in of_file.items() if key not in OF_ROAD}
     stated |= specimen.on_road
     own = _estimated([specimen])

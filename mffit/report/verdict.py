@@ -33,7 +33,9 @@ class Headline(NamedTuple):
     name: str
     value: str
     note: str
-    reached: str = ""  #: where a largest force that is not a peak was reached
+    where: str = (
+        ""  #: the load if it is not the nominal one, and where a largest force that is not a peak was reached
+    )
 
 
 def judgement(result: BuildResult) -> str:
@@ -72,14 +74,20 @@ def over_noise(result: BuildResult, channel: str) -> float | None:
 def headlines(result: BuildResult) -> list[Headline]:
     """The four numbers that a user came for: of the direct method on a disc, then of the model where data decide them."""
     nominal, found = result.measured.nominal, []
-    if result.measured.epsilon_gamma is not None and nominal is not None:
-        carried = result.measured.carried
-        at = f"PECP1 of the file, {SOURCES[carried.source]} at {number(nominal.load, 0)} N" if carried else ""
-        epsilon = result.measured.epsilon_of_file
-        of_disc = (("epsilon_gamma", epsilon, at), ("C_phit", nominal.C_phit, "turn slip"))
-        found = [_headline(DIRECT[name], value, note) for name, value, note in of_disc if value is not None]
     tyre = result.tyres[result.fitted]
     load = float(tyre["FNOMIN"])
+    if result.measured.epsilon_gamma is not None and nominal is not None:
+        carried = result.measured.carried
+        by = f"PECP1 of the file, {SOURCES[carried.source]}" if carried else ""
+        of_disc = (
+            ("epsilon_gamma", result.measured.epsilon_of_file, by),
+            ("C_phit", nominal.C_phit, "turn slip"),
+        )
+        found = [
+            _headline(DIRECT[name], value, note, (nominal.load, load))
+            for name, value, note in of_disc
+            if value is not None
+        ]
     of_model = characteristics(
         tyre, load, turn_slip=result.on_disc, known=result.fit.posterior, predictor=result.prediction
     )
@@ -92,11 +100,12 @@ def headlines(result: BuildResult) -> list[Headline]:
     of_model |= of_road
     tested = Tested.of([tyre])
     for key in filter(tested.varied, DECIDED_BY):
-        value, at = of_model[key], f"at {number(loads[key], 0)} N, straight path"
-        note = f"{'on the lesser side' if key in of_road else 'of the model'} {at}"
+        value, by = of_model[key], "on the lesser side" if key in of_road else "of the model"
         if DECIDED_BY[key].channel in fitted and value.u:
             end = f"at {tested.end(key)}, the end of the tested range" if isinstance(value, AtLeast) else ""
-            found.append(_headline(CHARACTERISTICS[key], value, note, end))
+            found.append(
+                _headline(CHARACTERISTICS[key], value, f"{by}, straight path", (loads[key], load), end)
+            )
     return found[:FOUR]
 
 
@@ -110,10 +119,16 @@ def _of_road(road: OnRoad | None) -> dict[str, Quantity]:
     return {key: q for key, q in found.items() if q is not None}
 
 
-def _headline(known: QuantityName, value: Quantity, note: str, reached: str = "") -> Headline:
+def _headline(
+    known: QuantityName, value: Quantity, note: str, loads: tuple[float, float], reached: str = ""
+) -> Headline:
+    """A number with a ``note``; ``loads`` are its own and the nominal one."""
+    own, nominal = (f"at {number(load, 0)} N" for load in loads)
     name = f"{known.word[0].upper()}{known.word[1:]} {known.ascii}"
-    note = "; ".join(filter(None, (reached, note)))
-    return Headline(name, stated(value, known.unit_behind), note, reached)
+    where = "; ".join(filter(None, (reached, own if own != nominal else "")))
+    return Headline(
+        name, stated(value, known.unit_behind), "; ".join(filter(None, (reached, f"{note} {own}"))), where
+    )
 
 
 def purposes(result: BuildResult) -> dict[str, str]:

@@ -129,4 +129,4 @@ def _of_model(result: BuildResult) -> str:
     """The numbers that a user came for, a line each."""
     found = headlines(result)
     width = max((len(one.name) for one in found), default=0)
-    return "\n".join(f"{one.name:<{width}}  {one.value} {one.reached}".rstrip() for one in found)
+    return "\n".join(f"{one.name:<{width}}  {one.value} {one.where}".rstrip() for one in found)

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import shutil
+
 import numpy as np
 import pytest
 from conftest import CAMBERS, LOADS, Built, brush
 
 import tir
+from mffit import rounding
+from mffit.pipeline.fleets import fleet
 from mffit.prediction import MissedAtReadings, missed_sentence, region
 from mffit.prediction.region import SIDES, MissedRegion, _clearest, _Seen, missed_at_readings
 from mffit.prediction.slopes import MissedSlope
+from mffit.quantities import CHARACTERISTICS
+from mffit.report.verdict import headlines
 
 NAMES = ("Fz", "p")
 PLAN = [(load, pressure) for load in (500.0, 1500.0, 2500.0) for pressure in (7e4, 1e5) for _ in range(4)]
@@ -164,3 +170,14 @@ def test_a_difference_of_the_two_signs_is_as_uncertain_as_both_together(foreign:
     for up, down, apart in zip(seen["positive"], seen["negative"], seen["apart"], strict=True):
         assert apart.share == pytest.approx(up.share - down.share)
         assert apart.u**2 == pytest.approx(up.u**2 + down.u**2)
+
+
+def test_a_fleet_states_what_the_build_states(foreign: Built, tmp_path):
+    """The coefficients alone do not know by how much the formula misses the slope of a tyre that is not of it."""
+    shutil.copytree(foreign.folder, tmp_path / "again")
+    stated = {one.name.rpartition(" ")[2]: one for one in headlines(foreign.result)}
+    row, _ = fleet([foreign.folder, tmp_path / "again"]).rows
+    for key, name in (("C_gamma_N_per_rad", "C_gamma0"), ("mu_y", "mu_y")):
+        assert rounding.stated(row.numbers[key], CHARACTERISTICS[key].unit_behind) == stated[name].value
+    beside = foreign.result.measured.nominal.C_alpha_straight  # at the tested load that is nearest
+    assert row.numbers["C_alpha_N_per_rad"].u == pytest.approx(beside.u, rel=0.5)

@@ -170,6 +170,20 @@ def test_the_cornering_stiffness_of_a_disc_is_the_one_in_the_result(result):
     assert ascii_only(one.value) in build_summary(made)
 
 
+def test_numbers_at_another_load_than_the_nominal_one_say_at_which(result):
+    """The tested load nearest to the nominal one is the load of the direct method, not that of the model's numbers."""
+    nominal = replace(result.measured.nominal, C_alpha_straight=Quantity(-19302.0, 742.0, "N/rad", "fitted"))
+    load = float(result.tyre["FNOMIN"])
+    for there, said in ((load, ""), (0.95 * load, f" at {0.95 * load:.0f} N")):
+        measured = replace(result.measured, nominal=replace(nominal, load=there))
+        made = replace(result, measured=measured)
+        summary = build_summary(made).replace("\n", " \n")
+        for one in headlines(made):
+            at = there if re.search("C_phi|epsilon|eps|C_alpha0", one.name) else load
+            assert f" at {at:.0f} N" in one.note
+            assert f"{ascii_only(one.value)}{said if at == there else ''} \n" in f"{summary} \n"
+
+
 def test_a_number_that_was_not_reached_or_not_varied_is_not_stated_as_measured(tmp_path):
     """Sideslip to 5 deg, where the side force still rises, and no camber."""
     result = made_result(rig={"type": "flat-track"}, phi_t=0.0)
@@ -184,8 +198,8 @@ def test_a_number_that_was_not_reached_or_not_varied_is_not_stated_as_measured(t
     word, value = found["mu_y"].value.split(" ±")[0].rsplit(" ", 1)
     assert word == "at least"
     assert float(value) == pytest.approx(reached, abs=0.01)
-    assert found["mu_y"].reached == "at 5.0 deg, the end of the tested range"
-    assert found["mu_y"].reached in found["mu_y"].note
+    assert found["mu_y"].where == "at 5.0 deg, the end of the tested range"
+    assert found["mu_y"].where in found["mu_y"].note
     with without_pictures():
         write_build(result, tmp_path)
     assert "at least" in read_page(tmp_path / "report.html").text
