@@ -85,9 +85,12 @@ def _check_texts(rows: Sequence[Row], at: int, lines: Sequence[int], path: Path)
         sentence = "has numbers instead of headings; add a first line of headings"
         raise InputError(sentence, file=path, line=lines[at])
     if len(found) > 2 and not is_number(found[0]) and all(is_number(cell) for cell in found[1:]):
-        sentence = (
-            f'has numbers beside "{found[0]}" where headings are expected: if every row is a channel, transpose the '
-            "table, so that every column is one; else write a heading above every column"
+        below = [row[0] for row in rows[at + 1 :] if row and row[0] != ""]
+        sentence = f'has numbers beside "{found[0]}" where headings are expected: ' + (
+            "if rows and columns are settings, write one row per point, with a column for each setting and for the reading"
+            if below and all(map(is_number, below))
+            else "if every row is a channel, transpose the table, so that every column is one; else write a heading above every "
+            "column"
         )
         raise InputError(sentence, file=path, line=lines[at])
 

@@ -213,6 +213,14 @@ def test_a_need_is_met_above_its_threshold_only(need):
     assert not MET[need](too_little)
 
 
+def test_only_what_is_missing_is_said():
+    """The speeds differ and every point has its time, but both speeds in turn make the distance grow with the time."""
+    t, V = np.arange(40.0) * 10.0, np.tile([16.0, 30.0], 20)
+    points = make_points(np.tile([-0.1, 0.1], 20), 0.0, 1400.0, p=250e3, V=V, phi_t=0.0, t=t)
+    assert missing(BY_ID["wear"], points) == ("distances",)
+    assert missing(BY_ID["wear"], points.replace(t=np.full(40, np.nan))) == ("times", "distances")
+
+
 def test_invisible_effects_are_not_tried():
     points = read(programme(phi_t=0.0, T=np.nan))
     tried, notes = possible(CATALOG, points, Simulation.of(TYRE))

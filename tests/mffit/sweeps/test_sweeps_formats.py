@@ -172,6 +172,16 @@ def test_an_unknown_unit_among_known_ones_does_not_make_the_row_one_of_data(tmp_
     assert formats.read(tmp_path / "a.csv").units == ("deg", "N", "kPa abs")
 
 
+def test_a_table_of_a_reading_over_two_settings_needs_a_row_per_point(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("angle,15000.0,30000.0,45000.0\n-12.0,9.49,18.21,26.56\n-8.0,8.31,15.88,22.92\n")
+    with pytest.raises(
+        InputError, match=r'a\.csv:1: has numbers beside "angle".*one row per point'
+    ) as refused:
+        formats.read(path)
+    assert "transpose" not in str(refused.value)
+
+
 def test_a_table_on_its_side_is_to_be_transposed(tmp_path):
     (tmp_path / "a.csv").write_text("alpha_deg,-2,0,2\nFy_N,300,0,-300\n")
     with pytest.raises(InputError, match=r'a\.csv:1: has numbers beside "alpha_deg".*transpose the table'):
