@@ -59,7 +59,10 @@ def sniff(files: tuple[Path, ...], headings: dict[str, str], voice: Voice) -> No
 @click.option(
     "--belt", is_flag=True, help="With --from: the path was straight, whatever the recordings look like."
 )
-@click.option("--name", help="With --from: of the output files [default: the recording's, or the folder's].")
+@click.option(
+    "--name",
+    help="With --from: of the output files [default: the folder's, or the recording's if it lies there].",
+)
 @column
 @voiced
 def init(paths: tuple[Path, ...], recorded: bool, sample: str | None, voice: Voice, **asked: Any) -> None:

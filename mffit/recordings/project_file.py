@@ -53,7 +53,7 @@ class Stated(NamedTuple):
     nominal_pressure: float | None = None  #: [kPa]; else the most frequent pressure
     nominal_speed: float | None = None  #: [m/s]; else the most frequent speed
     name: str | None = None
-    """Of the output files; else the name of the recording, or of the folder for several."""
+    """Of the output files; else the name of the project's folder, or of the only recording if it lies there."""
     size: str | None = None
     width: float | None = None  #: [m]; else from the size
     rim_radius: float | None = None  #: [m]; else from the size
@@ -70,12 +70,13 @@ def tyre_found(sniffed: Sniffed, folder: Path) -> Stated:
     """Data of the tyre from the recordings and the name of the project's folder, rounded as in ``tyre.toml``."""
     size = next((tyre for r in sniffed.recordings if (tyre := named_tyre(r.about))), "")
     width, rim_radius = _of_size(size)
-    several = len(sniffed.recordings) > 1 and folder.name
+    first = sniffed.recordings[0].path
+    own = folder.name and (len(sniffed.recordings) > 1 or folder.resolve() != first.parent.resolve())
     of_files = {key: one.value for key, one in stated_of_tyre(sniffed).items()}
     return Stated(
         unloaded_radius=of_files.get("unloaded_radius"),
         nominal_load=of_files.get("nominal_load"),
-        name=slug(folder if several else sniffed.recordings[0].path),
+        name=slug(folder if own else first),
         size=size[:MOST_OF_SIZE] or None,
         width=width,
         rim_radius=rim_radius,

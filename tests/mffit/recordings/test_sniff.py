@@ -101,6 +101,9 @@ def test_units_that_a_file_does_not_state_are_marked_as_assumed(tmp_path):
     table = table.assign(P=table["P"] / 100.0, FZ=table["FZ"] / 1e3, V=table["V"] / 3.6)
     table.to_csv(tmp_path / "a.csv", index=False)
     _, written = pipeline.init_from([tmp_path / "a.csv"], tmp_path / "project", **GIVEN)
+    assert configuration.load(written[0]).tyre.name == "project"
+    _, beside = pipeline.init_from([tmp_path / "a.csv"], tmp_path, **GIVEN)
+    assert configuration.load(beside[0]).tyre.name == "a"
     content = tomllib.loads(written[0].read_text())
     assert content["columns"]["Fz_N"] == {"column": "FZ", "unit": "kN"}
     assert content["columns"]["p_kPa"] == {"column": "P", "unit": "bar"}
@@ -129,7 +132,7 @@ def test_from_the_recording_to_the_property_file(tmp_path, capsys):
     main(["init", "--from", str(machine), str(project), *options])
     assert "written" in capsys.readouterr().out
     content = tomllib.loads((project / "tyre.toml").read_text())
-    assert content["tyre"]["name"] == "cornering"
+    assert content["tyre"]["name"] == "project"
     assert content["tyre"]["size"] == "Tyre A, 7 inch"
     assert content["rig"] == {"type": "flat-track", "axes": "sae"}
     assert (project / "cornering.png").stat().st_size > 10_000
