@@ -28,9 +28,18 @@ ABOUT = "Written by mffit: it replaces the files listed here, while they are unc
 DISK_FULL = frozenset({errno.ENOSPC, errno.EROFS, errno.EDQUOT, errno.EFBIG})
 """Errors of a full or read-only disk."""
 
+BUILT = "result.json"
+"""A file that every build writes."""
 ELSEWHERE = "name another folder with --out"
 BEYOND_ANY_END = 1 << 30
 """Place of the lock of a file [bytes]."""
+
+
+def folder_of_build(folder: str | Path) -> Path:
+    """The folder of a build; of a project's folder, ``out`` in it, where a build writes if no other is named."""
+    folder = Path(folder)
+    inside = folder / "out"
+    return inside if (inside / BUILT).is_file() and not (folder / BUILT).exists() else folder
 
 
 class OutputEntry(NamedTuple):

@@ -14,6 +14,7 @@ import tir
 from mffit.errors import InputError
 from mffit.fit.priors import scatter
 from mffit.numbers import Numbers, from_json
+from mffit.output import folder_of_build
 from mffit.prediction.road import lesser
 from mffit.quantities import DIRECT, KEYS, OF_ROAD
 from mffit.rig_errors import BESIDE, DECLARED, OF_RUN, ZEROS, error_of, number_of
@@ -150,14 +151,10 @@ def read(folder: str | Path) -> Specimen:
     InputError
         ``mffit build`` did not write the folder, or it is incomplete.
     """
-    folder = Path(folder)
+    folder = folder_of_build(folder)
     if not (folder / RESULT).is_file():
-        inside = (folder / "out" / RESULT).is_file()
-        raise InputError(
-            f"contains no {RESULT}, so `mffit build` did not write it; give "
-            + ("its folder out/" if inside else "a folder that it wrote"),
-            file=folder,
-        )
+        sentence = f"contains no {RESULT}, so `mffit build` did not write it; give a folder that it wrote"
+        raise InputError(sentence, file=folder)
     result = _json(folder / RESULT)
     try:
         resolved = tomllib.loads((folder / RESOLVED).read_text(encoding="utf-8"))

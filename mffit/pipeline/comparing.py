@@ -98,7 +98,7 @@ def _subject(path: Path, given: Mapping[str, float]) -> ComparedSubject:
     build = None
     if path.is_dir():
         build = _build_in(path)
-        path = path / build.file
+        path = build.folder / build.file
     else:
         with suppress(InputError):
             build = fleet.read(path.parent)

@@ -20,7 +20,7 @@ from mffit.fit import priors
 from mffit.fit.influences.nuisances import of_run
 from mffit.fleet import Fleet, Hierarchy, Row, Specimen, TyreEstimate
 from mffit.numbers import Numbers
-from mffit.output import Project, output_folder, refuse_early
+from mffit.output import Project, folder_of_build, output_folder, refuse_early
 from mffit.pipeline.build_output import numbers
 from mffit.pipeline.fleet_notes import fleet_notes, note_on_sharing
 from mffit.progress import Progress, silent
@@ -50,7 +50,7 @@ def fleet(
     InputError
         A folder is not complete or not of a build, one is given twice, or fewer than two are given.
     """
-    places = [Path(folder) for folder in folders]
+    places = [folder_of_build(folder) for folder in folders]
     if len({place.resolve() for place in places}) < max(len(places), 2):
         raise InputError("a fleet needs two or more built tyres, each named once: mffit fleet DIR DIR...")
     if out is not None:

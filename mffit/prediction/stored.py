@@ -18,6 +18,7 @@ from mffit.errors import InputError
 from mffit.linearised.components import Components
 from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
+from mffit.output import folder_of_build
 from mffit.points import Points
 from mffit.points.levels import SPEED
 from mffit.points.points import of_si
@@ -77,6 +78,7 @@ def load(folder: Path) -> tuple[Predictor, Tyre, Tyre]:
     TirError
         A property file of the build is missing or damaged.
     """
+    folder = folder_of_build(folder)
     path = folder / FILE
     if not path.exists():
         sentence = (

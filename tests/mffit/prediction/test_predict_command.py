@@ -89,6 +89,13 @@ def test_a_moved_folder_is_enough(foreign: Built, here):
     assert mffit.predict("moved", GOOD).equals(mffit.predict(foreign.folder, GOOD))
 
 
+def test_the_folder_of_a_project_is_that_of_its_build(foreign: Built):
+    """A build writes to out/ in it."""
+    assert mffit.predict(foreign.folder.parent, GOOD).equals(mffit.predict(foreign.folder, GOOD))
+    same = mffit.compare(foreign.folder.parent, foreign.folder)
+    assert not [one for one in same.numbers if one.first != one.second]
+
+
 def test_a_second_run_replaces_its_own_file_only(foreign: Built, here, capsys):
     written(GOOD)
     Path("mine.csv").write_text("alpha_deg,Fy_best\n")

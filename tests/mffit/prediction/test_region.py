@@ -176,7 +176,7 @@ def test_a_fleet_states_what_the_build_states(foreign: Built, tmp_path):
     """The coefficients alone do not know by how much the formula misses the slope of a tyre that is not of it."""
     shutil.copytree(foreign.folder, tmp_path / "again")
     stated = {one.name.rpartition(" ")[2]: one for one in headlines(foreign.result)}
-    row, _ = fleet([foreign.folder, tmp_path / "again"]).rows
+    row, _ = fleet([foreign.folder.parent, tmp_path / "again"]).rows
     for key, name in (("C_gamma_N_per_rad", "C_gamma0"), ("mu_y", "mu_y")):
         assert rounding.stated(row.numbers[key], CHARACTERISTICS[key].unit_behind) == stated[name].value
     beside = foreign.result.measured.nominal.C_alpha_straight  # at the tested load that is nearest
