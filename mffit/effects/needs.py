@@ -12,7 +12,7 @@ NEEDS = {
     "temperatures": "temperatures that differ (T_degC)",
     "speeds": "two speeds",
     "times": "the time of every point (t_s)",
-    "distances": "speeds in an order in which the distance is not in proportion to the time",
+    "distances": "speeds that keep distance out of proportion to time",
     "runs": "at least three runs, each in a file of its own",
     "directions": "runs in both directions of rolling",
     "senses": "sideslip swept both up and down",
