@@ -70,7 +70,7 @@ def hardly_this_tyre(found: Explanation) -> tuple[Rest, ...]:
     if found.strained:
         return (Rest(RestKind.COEFFICIENTS, "", math.inf),)
     noise = found.scatter
-    residual = found.problem.measured - found.problem.predict(found.refined.state)
+    residual = found.plain.measured - found.plain.predict(found.refined.state)
     z = np.where(np.isfinite(noise.stated), residual / noise.stated, np.nan)
     misfit = {
         name: float(np.nan_to_num(robust(rows), nan=math.inf)) for name, rows in noise.by_channel(z).items()
@@ -95,7 +95,7 @@ def _beyond_noise(found: Explanation) -> Iterator[Rest]:
     noise, points = found.scatter, found.problem.points
     if noise.origin is not Origin.STATED:
         return
-    left = noise.by_channel(found.problem.measured - found.problem.predict(found.refined.state))
+    left = noise.by_channel(found.plain.measured - found.plain.predict(found.refined.state))
     for channel, residual in left.items():
         u = noise.of_channel(noise.u, channel)
         known = np.isfinite(u)

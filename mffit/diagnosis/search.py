@@ -90,7 +90,8 @@ class Search:
     def problem(self, state: Simulation, noise: Noise, effects: Sequence[Effect]) -> DiagnosisProblem:
         """The readings with coefficients linearised at a simulation and integrated out, in addition to smooth structure.
 
-        The coefficients that ``effects`` have changed in the simulation are those of the given model.
+        The coefficients that ``effects`` have changed in the simulation are those of the given model. Where what is
+        linear there misses the given model by more than they have moved, all are linearised at the given model.
         """
         changed = {name for effect in effects for name in effect.parameters}
         names = [name for name in self.inexact.names if name not in changed]
@@ -103,6 +104,10 @@ class Search:
                 - self.inexact.expected
             )
             moved = slopes_of(state, self.points, self.inexact.names, self.channels) @ away
+            truly = at.predict(self.points, self.channels) - self.start.predict(self.points, self.channels)
+            off, size = (rms((change / noise.u)[noise.used]) for change in (moved - truly, truly))
+            if off > size:  # no change at all would be nearer
+                state, at, moved = self.start, self.start, None
         return DiagnosisProblem(
             self.points, at, self.shared(noise, state), self.declared, moved, self.structure, self.allowed
         )
