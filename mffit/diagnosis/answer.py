@@ -18,7 +18,7 @@ from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.inexact import EXACT
 from mffit.diagnosis.limits import Limit, limits
 from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.notes import DiagnosisNote
+from mffit.diagnosis.notes import DiagnosisNote, MoreThanBuild
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.diagnosis.repair import Confirmed, Repair
 from mffit.diagnosis.rest import Answer, Rest
@@ -52,13 +52,17 @@ def named_effects(
 
 
 def answered(
-    rest: Sequence[Rest], named: Sequence[AcceptedEffect], alternatives: Mapping[str, float]
+    rest: Sequence[Rest],
+    named: Sequence[AcceptedEffect],
+    alternatives: Mapping[str, float],
+    notes: Sequence[DiagnosisNote] = (),
 ) -> Answer:
-    """The answer: what remains decides first, then ties and confidences of what is named."""
+    """The answer: what remains decides first, then ties and confidences of what is named, then what the build states."""
     if rest:
         return Answer.UNKNOWN
     if not named:
         likely = max(alternatives.values(), default=0.0) > MOST
+        likely |= any(isinstance(one, MoreThanBuild) for one in notes)
         return Answer.UNDECIDED if likely else Answer.NOTHING
     open_ = any(one.tied for one in named) or not any(one.repaired for one in named)
     return Answer.UNDECIDED if open_ else Answer.FOUND
@@ -81,7 +85,7 @@ def answer(
     diagnosis = Diagnosis(
         headline="",
         reasons=(),
-        answer=answered(confirmed.rest, named, confirmed.alternatives),
+        answer=answered(confirmed.rest, named, confirmed.alternatives, notes),
         rest=confirmed.rest,
         name=search.config.tyre.name,
         points=given.points,
@@ -116,8 +120,9 @@ def answer(
 
 
 def _limits(confirmed: Confirmed, candidates: Sequence[Effect]) -> tuple[Limit, ...]:
-    """The limits of the candidates that are neither named nor tied with a named one."""
+    """The limits of the candidates that are neither named, nor tied with a named one, nor likely."""
     known = {i for one in confirmed.named for i in (one.effect.id, *one.tied_with)}
+    known |= {name for name, confidence in confirmed.alternatives.items() if confidence > MOST}
     return limits(confirmed.found.problem, confirmed.found.chosen, candidates, known)
 
 
@@ -171,7 +176,7 @@ def _found(
         together=together,
         parameters={n: (numbers[n], u[n]) for n in effect.parameters},
         before={n: given.start.number(n, given.points) for n in effect.parameters},
-        gap_after=gap(problem.measured - problem.predict(with_it.state), found.scatter),
+        gap_after=gap(given.measured - given.predict(with_it.state), found.scatter),
         held_out=validate(given, with_it, freed, weights=found.plain.noise).gap_after,
         tied=tuple(rival.effects[-1] for rival in tied),
         separation=min(separations, key=lambda s: s.chi2, default=None),

@@ -107,9 +107,7 @@ SMOOTH_AMPLITUDES = Series(
 MOST_AMPLITUDES_KEPT = Count(8, "-", "Most covariances of smooth structure that are kept: each takes memory.")
 SMOOTH_AMPLITUDES_TRIED = Count(12, "-", "Smooth amplitudes that are tried, evenly in their logarithm.")
 LEAST_CERTAINTY = Real(
-    0.85,
-    "-",
-    "Certainty, less the unexplained share, that an effect needs: it explains six times as much as stays unexplained beside it.",
+    0.85, "-", "Certainty against the best unnamed structure in its place that an effect needs."
 )
 DIVISIONS_BESIDE_NOISE = Count(
     3,

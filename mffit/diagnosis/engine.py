@@ -11,6 +11,7 @@ import numpy as np
 from mffit.config import Config, axis_signs, declared_faults
 from mffit.diagnosis.answer import answer, named_effects, not_accepted
 from mffit.diagnosis.conditions import by_condition
+from mffit.diagnosis.estimated import beyond_build
 from mffit.diagnosis.explain import explain
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.inexact import with_rig
@@ -19,6 +20,7 @@ from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import (
     DiagnosisNote,
     LeftByBuild,
+    MoreThanBuild,
     NoRepair,
     NotVisible,
     OneSweep,
@@ -88,11 +90,16 @@ def _notes(
 ) -> list[DiagnosisNote]:
     """What the reader of a diagnosis must know in addition to its effects."""
     found, left = confirmed.found, {name: search.asked.left[name] for name in search.allowed}
+    more = {} if confirmed.rest else beyond_build(found, search)
     playing = int(np.sum(done.explanation.refined.state.floats(done.explanation.problem.points)))
     remarks = (
         *(TakenOff(sentence) for sentence in search.asked.taken_off),
         wrong,
-        LeftByBuild(left) if found.smooth.expected and not confirmed.rest else None,
+        MoreThanBuild(more)
+        if more
+        else LeftByBuild(left)
+        if found.smooth.expected and not confirmed.rest
+        else None,
         without_noise(found.scatter),
         *offsets_or_memory(found.scatter, search.candidates, found.chosen.ids),
         WithinPlay(playing) if playing else None,

@@ -28,6 +28,7 @@ from mffit.numbers import Numbers
 from mffit.points.like import curves
 from mffit.rig_errors import error_of
 from mffit.scatter import rms
+from tir.parameters import BY_NAME
 
 
 def estimated(found: Explanation, search: Search) -> Explanation:
@@ -90,6 +91,24 @@ class _Evidence(NamedTuple):
     def _gain(self, numbers: Numbers) -> float:
         own = self.slopes[:, self.known.rows(numbers.names)] @ numbers.root
         return Informed.of_rows(np.hstack([own, self.missed]), self.residual).gain
+
+
+def beyond_build(found: Explanation, search: Search) -> dict[str, tuple[float, float]]:
+    """By channel, what a built file misses beyond the noise and what its build left, if it is more than twice that.
+
+    The errors of the rig are estimated within their declaration; the coefficients stay as built.
+    """
+    plain = DiagnosisProblem(found.problem.points, search.start, found.plain.noise, found.problem.declared)
+    of_rig, out = search.beside.without(BY_NAME), {}
+    state = plain.refine(found.chosen, of_rig)[0].state
+    away = np.where(np.isfinite(plain.noise.u), plain.measured - plain.predict(state), np.nan)
+    missed, u = plain.noise.by_channel(away), found.scatter.by_channel(found.scatter.u)
+    for name, left in search.asked.left.items():
+        if name in missed:
+            beyond = rms(missed[name]) ** 2 - rms(np.where(np.isfinite(u[name]), u[name], np.nan)) ** 2
+            if beyond > (TWO_SIGMA * left) ** 2:
+                out[name] = math.sqrt(beyond), left
+    return out
 
 
 def _strained(plain: DiagnosisProblem, chosen: Hypothesis, search: Search) -> bool:

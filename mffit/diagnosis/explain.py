@@ -24,10 +24,7 @@ from mffit.scatter import rms
 
 
 def explain(search: Search) -> Explanation:
-    """The explanation of the readings.
-
-    Next to what its formula misses, the points of a model's own fit decide on no effect; the build states which would help.
-    """
+    """The explanation of the readings."""
     state, noise = _all_at_once(search)
     found = _selected_around(search, state, noise)
     if noise.offset and not noise.offset & found.chosen.ids:
@@ -37,8 +34,6 @@ def explain(search: Search) -> Explanation:
         found = _selected_around(search, found.refined.state, noise, found.chosen)
     if search.inexact.names:  # coefficients act otherwise where only the named effects act with them
         found = _selected_around(search, found.refined.state, noise, found.chosen)
-    if search.asked.seen and found.smooth.found:
-        return found.withdrawn()
     if found.chosen.effects and (found.bump.found or found.smooth.found):
         found = replace(found, imitated=imitations(found.problem, search.candidates))
     return estimated(found, search)

@@ -97,12 +97,9 @@ class Explanation(ReadOnlyArrays):
         return replace(self, chosen=null, refined=null, coefficients={}, freed=EXACT)
 
     def certainty(self, effect: Effect) -> float:
-        """Probability of an effect against the best unnamed structure in its place.
-
-        It is lower the more of the misfit remains unexplained with the effect.
-        """
-        against, share = self._weighed(effect)
-        return share / (1.0 + math.exp(-against))
+        """Probability of an effect against the best unnamed structure in its place, whatever remains beside it."""
+        against, _ = self._weighed(effect)
+        return 1.0 / (1.0 + math.exp(-against))
 
     def confidence(self, effect: Effect) -> float:
         """The certainty, reduced by the probability that the effect only imitates a cause outside the library.

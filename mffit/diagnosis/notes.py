@@ -211,6 +211,25 @@ class LeftByBuild:
 
 
 @dataclass(frozen=True, slots=True)
+class MoreThanBuild:
+    """The model misses more than twice what its build left, even with the errors of the rig that are declared."""
+
+    missed: Mapping[str, tuple[float, float]]
+    """By channel that shows it, what the model misses beyond the noise and what its build left, rms [N], [Nm]."""
+
+    @property
+    def sentence(self) -> str:
+        sizes = [
+            f"the {CHANNELS[n].word} by {short(x)} {CHANNELS[n].unit} where its build left {short(left)}"
+            for n, (x, left) in self.missed.items()
+        ]
+        return (
+            f"With the declared errors of the rig the model misses {listed(sizes)}, both beyond the noise. Coefficients take "
+            "it up within their uncertainty, as they would for another specimen or for a fault of the rig."
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class ModelFittedFirst:
     """Without a given model or an earlier build, a model was fitted to the same points."""
 

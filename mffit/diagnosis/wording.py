@@ -11,7 +11,7 @@ from mffit.constants import MISFIT_AT_NOISE, MOST, NAMED_IN_SENTENCE, TWO_SIGMA
 from mffit.diagnosis import constants, priors
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.noise import MemorySpan, Noise, Origin
-from mffit.diagnosis.notes import AnotherTyre, NoRepair, TakenOff, short
+from mffit.diagnosis.notes import AnotherTyre, MoreThanBuild, NoRepair, TakenOff, short
 from mffit.diagnosis.remains import BestEffect
 from mffit.diagnosis.rest import Answer, Rest, RestKind
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis
@@ -64,6 +64,8 @@ def verdict(diagnosis: Diagnosis) -> str:
             return f"The missing {'effect is' if len(effects) == 1 else 'effects are'} {names}"
         case Answer.UNDECIDED if effects:
             return f"These data cannot tell what is missing; the best explanation is {names}"
+        case Answer.UNDECIDED if any(isinstance(one, MoreThanBuild) for one in diagnosis.notes):
+            return "Something may be missing: the model misses more than its build left, and no effect stands out"
         case Answer.UNDECIDED:
             likeliest, confidence = diagnosis.ranked_alternatives()[0]
             refused = any(isinstance(remark, NoRepair) for remark in diagnosis.notes)
@@ -71,6 +73,8 @@ def verdict(diagnosis: Diagnosis) -> str:
             what = f"{NAMES.get(likeliest, likeliest)} is suspected (probability {per_cent(confidence)})"
             return f"Nothing is corrected; {what}, but {but}"
         case Answer.UNKNOWN:
+            if diagnosis.suspected:
+                return f"More is missing than effects of the library describe{f', beside {names}' if effects else ''}"
             also = f" in addition to {names}" if effects else ""
             return f"Something is missing that no effect of the library describes{also}"
 
@@ -126,7 +130,9 @@ def advice(diagnosis: Diagnosis) -> list[str]:
 
     file, rig, beside = diagnosis.file_said, names("rig"), names("environment")
     if diagnosis.delivers:
-        found = [f"Use {file}: it contains {names('tyre', in_file=True)}."]
+        holds = names("tyre", in_file=True)
+        doubted = f"{file} contains {holds}, and is not to be trusted."
+        found = [doubted if reasons(diagnosis) else f"Use {file}: it contains {holds}."]
     elif reasons(diagnosis):
         found = [f"Nothing in {file} is corrected."]
     else:
@@ -232,14 +238,20 @@ def _zeros(diagnosis: Diagnosis) -> list[str]:
 def _suspicions(diagnosis: Diagnosis) -> str:
     """A sentence on effects that are named but not repaired; empty if all are repaired."""
     found = diagnosis.suspected
-    if not found or any(isinstance(remark, NoRepair) for remark in diagnosis.notes):
+    if not found or any(isinstance(remark, NoRepair) and remark.effects for remark in diagnosis.notes):
         return ""
-    limit, names = per_cent(MOST), listed([_suspicion(one) for one in found])
+    limit, names = per_cent(MOST), listed([_suspicion(one, diagnosis) for one in found])
     return f" Suspected but not repaired, at a confidence below {limit}: {names}."
 
 
-def _suspicion(found: AcceptedEffect) -> str:
-    return f"{found.effect.name} ({per_cent(found.confidence)})"
+def _suspicion(found: AcceptedEffect, diagnosis: Diagnosis) -> str:
+    """An effect that is not repaired, with the channel that it, and those named before it, would bring closest to the model."""
+    given, after = diagnosis.gap_examined, found.gap_after
+    sizes = [(after.rms(n) / given.rms(n), n, unit) for n, unit, _ in _measured(diagnosis.noise)]
+    share, name, unit = min(sizes)
+    was, is_ = short(given.rms(name)), short(after.rms(name))
+    takes = f", taking {CHANNELS[name].word} from {was} to {is_} {unit}" if share < 1.0 else ""
+    return f"{found.effect.name} ({per_cent(found.confidence)}{takes})"
 
 
 def _times_stated(noise: Noise, channel: str) -> str:

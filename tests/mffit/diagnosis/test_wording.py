@@ -143,9 +143,12 @@ def test_what_is_not_repaired_is_no_answer_where_something_unknown_is_missing(ca
     weak = replace(camber.effects[0], confidence=0.4, together=0.4, repaired=False)
     found = replace(camber, effects=(weak,), answer=Answer.UNKNOWN, alternatives={})
     said = wording.headline(found)
-    assert said.startswith("Something is missing that no effect of the library describes: the rms misfit is")
+    assert said.startswith("More is missing than effects of the library describe: the rms misfit is")
     assert "instead of" not in said
-    assert said.endswith(" Suspected but not repaired, at a confidence below 50 %: camber stiffness (40 %).")
+    assert (
+        " Suspected but not repaired, at a confidence below 50 %: camber stiffness (40 %, taking side force from "
+        in said
+    )
 
 
 @pytest.mark.parametrize(
@@ -165,6 +168,11 @@ def test_what_is_not_repaired_is_no_answer_where_something_unknown_is_missing(ca
 def test_what_remains_decides_first_then_ties_and_confidence(camber, rest, named, alternatives, answer):
     effects = [replace(camber.effects[0], **changes) for changes in named]
     assert answered(rest, effects, alternatives) is answer
+
+
+def test_a_file_that_is_not_to_be_trusted_is_not_to_be_used(camber):
+    doubted = replace(camber, answer=Answer.UNKNOWN, rest=(SMOOTH,))
+    assert wording.advice(doubted)[0] == "stiffer.tir contains camber stiffness, and is not to be trusted."
 
 
 def test_advice_names_the_file_the_rig_and_the_run(camber):
