@@ -56,6 +56,8 @@ def _lowest(found: Fitted, stated: FitProblem, plan: FitPlan) -> Fitted:
     here = replace(found.problem.thinned(next(_strides(len(found.problem.points)))), radii=())
     alone = replace(here, sigma={name: u for name, u in here.sigma.items() if name == "Mz"})
     names = [name for name in plan.free if BY_NAME[name].channel == "Mz"]
+    if not names:
+        return found
     first, *others = (_end(alone, names, plan, shape) for shape in ({}, *SHAPES_OF_MZ))
     best = min(others, key=lambda end: end.cost)
     if best.cost > (1.0 - constants.STAGE_TOLERANCE) * first.cost:

@@ -132,7 +132,7 @@ class Mixed(ReadOnlyArrays):
             noise=-0.5 * float(sums.readings - misfit - effective),
             of_common=0.5 * told**2,
             of_own=0.5 * np.sum(own_told**2, axis=0),
-            of_noise=0.5 * float(sums.readings - effective),
+            of_noise=0.5 * max(float(sums.readings - effective), 0.0),  # but for rounding
         )
 
     def posterior(self, given: Variances) -> MixedPosterior:
