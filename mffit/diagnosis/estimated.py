@@ -28,7 +28,6 @@ from mffit.numbers import Numbers
 from mffit.points.like import curves
 from mffit.rig_errors import error_of
 from mffit.scatter import rms
-from tir.parameters import BY_NAME
 
 
 def estimated(found: Explanation, search: Search) -> Explanation:
@@ -96,10 +95,12 @@ class _Evidence(NamedTuple):
 def beyond_build(found: Explanation, search: Search) -> dict[str, tuple[float, float]]:
     """By channel, what a built file misses beyond the noise and what its build left, if it is more than twice that.
 
-    The errors of the rig are estimated within their declaration; the coefficients stay as built.
+    The errors of the rig are estimated within their declaration; the coefficients stay as built, and calibrations, which look
+    like the tyre, as declared.
     """
     plain = DiagnosisProblem(found.problem.points, search.start, found.plain.noise, found.problem.declared)
-    of_rig, out = search.beside.without(BY_NAME), {}
+    held = {n for n in search.beside.names if (e := error_of(n)) is None or e.is_gain}
+    of_rig, out = search.beside.without(held), {}
     state = plain.refine(found.chosen, of_rig)[0].state
     away = np.where(np.isfinite(plain.noise.u), plain.measured - plain.predict(state), np.nan)
     missed, u = plain.noise.by_channel(away), found.scatter.by_channel(found.scatter.u)

@@ -158,7 +158,7 @@ def test_one_load_that_reads_wrong_is_more_than_its_build_left(built_brush, tmp_
     for path in tmp_path.glob("*.csv"):
         table = pd.read_csv(path)
         loads = table["Fz_N"].round(-2)
-        table.assign(Fy_N=table["Fy_N"] * np.where(loads == loads.max(), 1.05, 1.0)).to_csv(path, index=False)
+        table.assign(Fy_N=table["Fy_N"] * np.where(loads == loads.max(), 1.04, 1.0)).to_csv(path, index=False)
     found = mffit.diagnose(project, built_brush)
     assert found.gap_examined.rms("Fy") > 25.0
     assert found.answer is not Answer.NOTHING
