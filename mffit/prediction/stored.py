@@ -19,7 +19,6 @@ from mffit.linearised.components import Components
 from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.output import folder_of_build
-from mffit.points import Points
 from mffit.points.levels import SPEED
 from mffit.points.points import of_si
 from mffit.prediction.conditions import PATH, checked, read_conditions
@@ -124,23 +123,27 @@ def predict(folder: str | Path, conditions: str | Path | pd.DataFrame) -> pd.Dat
     """
     known, tyre, fitted = load(Path(folder))
     table = checked(conditions) if isinstance(conditions, pd.DataFrame) else read_conditions(Path(conditions))
-    for sentence in _beyond_ranges(known, known.points(tyre, table), tyre):
+    for sentence in _beyond_ranges(known, tyre, table):
         warnings.warn(sentence, TirWarning, stacklevel=2)
     return known.predict(tyre, fitted, table)
 
 
-def _beyond_ranges(known: Predictor, points: Points, tyre: Tyre) -> Iterator[str]:
+def _beyond_ranges(known: Predictor, tyre: Tyre, table: pd.DataFrame) -> Iterator[str]:
     """A sentence for each condition that leaves the range of the property file: force and uncertainty are extrapolated there.
 
-    Speed, temperature and path curvature have no range in a file; those of the test count. Temperature is held to its ends.
+    Speed, temperature and path curvature have no range in a file; those of the test count. Temperature is held to its ends; a
+    speed that is not stated is no other one than that of the test.
     """
+    points = known.points(tyre, table)
     ranges = {
         name: tuple(tyre[key] * of_si(name) for key in keys)
         for name, keys in zip(("Fz_N", "gamma_deg", "p_kPa", "alpha_deg", "kappa"), RANGES, strict=True)
     }
     of_file = "the range of the property file", "no reading supports force or uncertainty there"
     words = dict.fromkeys(ranges, of_file)
-    ranges["V_mps"], words["V_mps"] = known.V_range, ("the tested speeds", of_file[1])
+    if "V_mps" in table:
+        points = points.replace(V=table["V_mps"].to_numpy(dtype=float))
+        ranges["V_mps"], words["V_mps"] = known.V_range, ("the tested speeds", of_file[1])
     if known.T_range is not None:
         ranges["T_degC"] = known.T_range
         words["T_degC"] = "the tested temperatures", "the force is that at the nearest of them"
