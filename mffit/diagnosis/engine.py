@@ -13,6 +13,7 @@ from mffit.diagnosis.answer import answer, named_effects, not_accepted
 from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.estimated import beyond_build
 from mffit.diagnosis.explain import explain
+from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.inexact import with_rig
 from mffit.diagnosis.needs import possible, without
@@ -89,17 +90,12 @@ def _notes(
     search: Search, confirmed: Confirmed, wrong: Misread | None, done: Repair, refused: NoRepair | None
 ) -> list[DiagnosisNote]:
     """What the reader of a diagnosis must know in addition to its effects."""
-    found, left = confirmed.found, {name: search.asked.left[name] for name in search.allowed}
-    more = {} if confirmed.rest else beyond_build(found, search)
+    found = confirmed.found
     playing = int(np.sum(done.explanation.refined.state.floats(done.explanation.problem.points)))
     remarks = (
         *(TakenOff(sentence) for sentence in search.asked.taken_off),
         wrong,
-        MoreThanBuild(more)
-        if more
-        else LeftByBuild(left)
-        if found.smooth.expected and not confirmed.rest
-        else None,
+        None if confirmed.rest else _of_build(found, search),
         without_noise(found.scatter),
         *offsets_or_memory(found.scatter, search.candidates, found.chosen.ids),
         WithinPlay(playing) if playing else None,
@@ -108,6 +104,15 @@ def _notes(
         done.refused,
     )
     return [note for note in remarks if note is not None]
+
+
+def _of_build(found: Explanation, search: Search) -> DiagnosisNote | None:
+    """What is missed against what the build of the file left."""
+    if more := beyond_build(found, search):
+        return MoreThanBuild(more)
+    if found.smooth.expected:
+        return LeftByBuild({name: search.asked.left[name] for name in search.allowed})
+    return None
 
 
 def _simulation(points: Points, tyre: Tyre, config: Config, rig: Mapping[str, float] | None) -> Simulation:

@@ -35,15 +35,11 @@ def first_fit(problem: FitProblem, start: Mapping[str, float], plan: FitPlan) ->
     _require_enough_points(problem.points, plan.free)
     problem = problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)})
     part = problem.reweighted().thinned(next(_strides(len(problem.points))))
-    ends = []
-    for shape in ({}, *(SHAPES_OF_FX if "PCX1" in plan.free else ())):
-        begin = part.with_values({n: plan.hand.inside(n, x) for n, x in shape.items() if n in plan.free})
-        numbers = [n for n in plan.numbers(begin) if n.name not in OF_CAMBER_OR_SPIN]
-        found = solve(begin.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
-        ends.append(found)
+    shapes = ({}, *(SHAPES_OF_FX if "PCX1" in plan.free else ()))
+    begins = [_begun(part, plan, shape) for shape in shapes]
+    ends = [_end(one, [n for n in plan.numbers(one) if n.name not in OF_CAMBER_OR_SPIN]) for one in begins]
     best = part.with_values(min(ends, key=lambda end: end.cost).values)
-    numbers = plan.numbers(best)
-    near = solve(best.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
+    near = _end(best, plan.numbers(best))
     return _lowest(polish(_approached(problem.with_values(near.values), plan), plan), problem, plan)
 
 
@@ -58,7 +54,8 @@ def _lowest(found: Fitted, stated: FitProblem, plan: FitPlan) -> Fitted:
     names = [name for name in plan.free if BY_NAME[name].channel == "Mz"]
     if not names:
         return found
-    first, *others = (_end(alone, names, plan, shape) for shape in ({}, *SHAPES_OF_MZ))
+    begins = (_begun(alone, plan, shape) for shape in ({}, *SHAPES_OF_MZ))
+    first, *others = (_end(one, plan.coefficients(names, one)) for one in begins)
     best = min(others, key=lambda end: end.cost)
     if best.cost > (1.0 - constants.STAGE_TOLERANCE) * first.cost:
         return found
@@ -66,10 +63,14 @@ def _lowest(found: Fitted, stated: FitProblem, plan: FitPlan) -> Fitted:
     return polish(stated.with_values({**values, **best.values}), plan)
 
 
-def _end(problem: FitProblem, names: Sequence[str], plan: FitPlan, begin: Mapping[str, float]) -> Solution:
-    """The end of a rough search of the named coefficients from other values of some."""
-    begun = problem.with_values({n: plan.hand.inside(n, x) for n, x in begin.items() if n in names})
-    return solve(begun.free(names), plan.coefficients(names, begun), tolerance=constants.STAGE_TOLERANCE)
+def _begun(problem: FitProblem, plan: FitPlan, shape: Mapping[str, float]) -> FitProblem:
+    """The problem with another ``shape`` of a curve to start from, as far as its coefficients are free."""
+    return problem.with_values({n: plan.hand.inside(n, x) for n, x in shape.items() if n in plan.free})
+
+
+def _end(problem: FitProblem, numbers: Sequence[FreeNumber]) -> Solution:
+    """The end of a rough search."""
+    return solve(problem.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
 
 
 def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
@@ -114,7 +115,7 @@ def refitted(fitted: Fitted, stated: FitProblem, tolerance: float = POLISH_TOLER
     here = stated.with_values({n.name: fitted.problem.value(n.name) for n in fitted.numbers})
     weighted = here.with_noise_of_misfit().reweighted()
     numbers = weighted.starting_here(fitted.numbers)
-    near = solve(weighted.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
+    near = _end(weighted, numbers)
     here = here.with_values(near.values).with_noise_of_misfit().reweighted()
     return _fitted(here, numbers, fitted, tolerance)
 

@@ -14,7 +14,7 @@ import tir
 from mffit.errors import InputError
 from mffit.fit.priors import scatter
 from mffit.numbers import Numbers, from_json
-from mffit.output import folder_of_build
+from mffit.output import BUILT, folder_of_build
 from mffit.prediction.road import lesser
 from mffit.quantities import DIRECT, KEYS, OF_ROAD
 from mffit.rig_errors import BESIDE, DECLARED, OF_RUN, ZEROS, error_of, number_of
@@ -22,7 +22,7 @@ from mffit.rounding import AtLeast
 from mffit.sheets import file_of, sheet_of
 from tir import Quantity, Tyre
 
-RESULT, RESOLVED, INFORMATION = "result.json", "resolved.toml", "information.json"
+RESOLVED, INFORMATION = "resolved.toml", "information.json"
 MEASURED = ("PECP1",)
 """Coefficients without a prior, because the uncertainty with which a build holds them comes from the same points."""
 HELD = "PECP2"
@@ -152,10 +152,10 @@ def read(folder: str | Path) -> Specimen:
         ``mffit build`` did not write the folder, or it is incomplete.
     """
     folder = folder_of_build(folder)
-    if not (folder / RESULT).is_file():
-        sentence = f"contains no {RESULT}, so `mffit build` did not write it; give a folder that it wrote"
+    if not (folder / BUILT).is_file():
+        sentence = f"contains no {BUILT}, so `mffit build` did not write it; give a folder that it wrote"
         raise InputError(sentence, file=folder)
-    result = _json(folder / RESULT)
+    result = _json(folder / BUILT)
     try:
         resolved = tomllib.loads((folder / RESOLVED).read_text(encoding="utf-8"))
         files, spin = result["files"], result["spin"]

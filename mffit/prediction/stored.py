@@ -132,7 +132,7 @@ def _beyond_ranges(known: Predictor, tyre: Tyre, table: pd.DataFrame) -> Iterato
     """A sentence for each condition that leaves the range of the property file: force and uncertainty are extrapolated there.
 
     Speed, temperature and path curvature have no range in a file; those of the test count. Temperature is held to its ends; a
-    speed that is not stated is no other one than that of the test.
+    speed that is not stated is that of the test.
     """
     points = known.points(tyre, table)
     ranges = {

@@ -318,9 +318,8 @@ def _fitted(
     parts = [np.flatnonzero(at.part == k) for k in np.unique(at.part)]
     end = fitted(u := float(constants.USUAL_MISFIT_OF_RADIUS), values)
     covariance = end.covariance
-    if len(parts) > len(
-        names
-    ):  # refit until the uncertainty, which sets the weight of the priors, is the misfit
+    if len(parts) > len(names):
+        # Refit until the uncertainty, which sets the weight of the priors, is the misfit.
         for _ in range(constants.REFIT_STEPS):
             wider = _alike(end, parts)
             end = fitted(u := u * wider, {**values, **end.values})
