@@ -46,6 +46,12 @@ class Input:
         """Width of the tested range."""
         return self.upper - self.lower
 
+    @property
+    def shown(self) -> tuple[float, float]:
+        """The tested range; on both sides of zero what was tested on one, because a tyre is nearly its own mirror image."""
+        end = max(-self.lower, self.upper)
+        return (-end, end) if self.name in REVERSED else (self.lower, self.upper)
+
     def stretched(self, values: np.ndarray) -> np.ndarray:
         """Values of a swept slip on a scale with the same ends that is stretched around zero; others as they are."""
         if not self.is_stretched:
@@ -60,7 +66,7 @@ class Input:
 
         The values at an end and in the middle of the range show the slope there.
         """
-        end, middle = np.clip(values, self.lower, self.upper), 0.5 * (self.lower + self.upper)
+        end, middle = np.clip(values, *self.shown), 0.5 * sum(self.shown)
         beyond = self._apart(values, end)
         return np.asarray(beyond**2 * (beyond + self._apart(end, middle)))
 
@@ -138,8 +144,8 @@ def inputs_of(points: Points) -> tuple[Input, ...]:
 
 def _mirrored(one: Input) -> Input:
     """The condition with a range that its mirror images have in common with it."""
-    end = max(-one.lower, one.upper)
-    return replace(one, lower=-end, upper=end, mirrored=True)
+    lower, upper = one.shown
+    return replace(one, lower=lower, upper=upper, mirrored=True)
 
 
 def _input(name: str, values: np.ndarray, steps: int, averaged: tuple[float, ...] = ()) -> Input:

@@ -162,13 +162,13 @@ class Predictor(ReadOnlyArrays):
     @property
     def sharpest(self) -> float:
         """Largest tested curvature of the path, to either side [1/m]."""
-        return float(max(map(abs, (self.path, *self._ranges.get("phi_t", ())))))
+        return float(max(map(abs, (self.path, *self._shown.get("phi_t", ())))))
 
     @property
-    def _ranges(self) -> dict[str, tuple[float, float]]:
-        """The tested range of every condition that varies for some channel."""
+    def _shown(self) -> dict[str, tuple[float, float]]:
+        """:attr:`Input.shown` of every condition that varies for some channel."""
         inputs = itertools.chain.from_iterable(one.smooth.inputs for one in self.channels.values())
-        return {one.name: (one.lower, one.upper) for one in inputs}
+        return {one.name: one.shown for one in inputs}
 
     def predict(
         self, tyre: Tyre, fitted: Tyre, conditions: pd.DataFrame, channels: Iterable[str] | None = None
@@ -266,7 +266,7 @@ class Predictor(ReadOnlyArrays):
 
         A tyre with a proven model error may go on otherwise: the change may be none, or twice, or any between.
         """
-        slips = {name: ends for name, ends in self._ranges.items() if name in SLIPS}
+        slips = {name: ends for name, ends in self._shown.items() if name in SLIPS}
         near = points.replace(**{name: np.clip(getattr(points, name), *ends) for name, ends in slips.items()})
         rows = np.flatnonzero((near.alpha != points.alpha) | (near.kappa != points.kappa))
         out = {name: np.zeros(len(points)) for name in forces}
@@ -339,7 +339,7 @@ class Predictor(ReadOnlyArrays):
         """What is left of a channel's model error, by the rule of :class:`tir.correction.Correction`."""
         slip = np.zeros(len(points))
         if "kappa" not in [one.name for one in channel.smooth.inputs]:
-            slip = slip_beyond(points.kappa, points.alpha, *self._ranges.get("kappa", (0.0, 0.0)))
+            slip = slip_beyond(points.kappa, points.alpha, *self._shown.get("kappa", (0.0, 0.0)))
         return Remaining(np.asarray(share_of_load(points.Fz, max(self.lowest_load, 1e-9))), slip)
 
     def points(self, tyre: Tyre, conditions: pd.DataFrame) -> Points:

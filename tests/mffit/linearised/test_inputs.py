@@ -124,7 +124,7 @@ def test_a_disc_was_tested_on_the_other_side_too():
 
 
 @pytest.mark.parametrize(
-    ("name", "lower", "upper"), [("alpha", -0.6, 0.0), ("Fz", 2.0 * np.exp(-0.3) - 1.0, 1.0)]
+    ("name", "lower", "upper"), [("kappa", -0.6, 0.0), ("Fz", 2.0 * np.exp(-0.3) - 1.0, 1.0)]
 )
 def test_beyond_a_range_a_curve_strays_as_one_whose_slope_wanders_at_random(name, lower, upper):
     """Drawn curves, each continued by the straight line through its values at the end and in the middle of the range."""
@@ -134,7 +134,14 @@ def test_beyond_a_range_a_curve_strays_as_one_whose_slope_wanders_at_random(name
     one, at = Input(name, lower, upper, 0.1), np.array([0.05, 0.15, 0.3])
     end, before = curve[:, 60:61], curve[:, 30:31]
     error = curve[:, [65, 75, 90]] - end - (end - before) / 0.3 * at
-    found = one.strayed(upper + at if name == "alpha" else upper * np.exp(at))
+    found = one.strayed(upper + at if name == "kappa" else upper * np.exp(at))
     drawn = np.mean(error**2, axis=0)
     assert found / found[-1] == pytest.approx(drawn / drawn[-1], rel=0.1)
     assert not np.any(one.strayed(np.array([lower, 0.5 * (lower + upper), upper, np.nan])))
+
+
+@pytest.mark.parametrize(("name", "is_angle"), [("alpha", True), ("gamma", True), ("kappa", False)])
+def test_of_an_angle_the_mirror_image_of_what_was_tested_is_no_extrapolation(name, is_angle):
+    one = Input(name, 0.0, 0.2, 0.02)
+    assert np.all((one.strayed(np.array([-0.2, -0.05])) == 0.0) == is_angle)
+    assert one.strayed(np.array([-0.25])) > 0.0

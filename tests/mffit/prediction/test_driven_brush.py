@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -21,16 +24,12 @@ def forces(alpha, Fz, kappa):
     return dict(zip(NOISE, TYRE.driven(np.radians(alpha), 0.0, Fz, kappa), strict=True))
 
 
-@pytest.fixture(scope="module")
-def driven(tmp_path_factory) -> Built:
-    """Sweeps of sideslip, and of slip at five sideslips, at three loads."""
-    folder, random, runs = tmp_path_factory.mktemp("driven"), np.random.default_rng(4), []
+def campaign(folder: Path, sideslip: np.ndarray, held: Sequence[float]) -> Built:
+    """Sweeps of sideslip, and of slip at each sideslip that is ``held``, at three loads; angles [deg]."""
+    random, runs = np.random.default_rng(4), []
     slip = np.linspace(-0.15, 0.15, 21)
     for Fz in (1000.0, 1700.0, 2600.0):
-        for alpha, kappa in (
-            (np.array(SHORT, dtype=float), 0.0),
-            *((a, slip) for a in (-5.0, -2.0, 0.0, 2.0, 5.0)),
-        ):
+        for alpha, kappa in ((sideslip, 0.0), *((a, slip) for a in held)):
             table = pd.DataFrame({"alpha_deg": alpha, "gamma_deg": 0.0, "Fz_N": Fz, "kappa": kappa})
             for name, true in forces(table.alpha_deg, Fz, table.kappa).items():
                 table[name] = true + NOISE[name] * random.standard_normal(len(table))
@@ -45,6 +44,14 @@ def driven(tmp_path_factory) -> Built:
     path = folder / "tyre.toml"
     path.write_text(tomli_w.dumps(config))
     return build(path)
+
+
+@pytest.fixture(scope="module")
+def driven(tmp_path_factory) -> Built:
+    """To both sides of sideslip."""
+    return campaign(
+        tmp_path_factory.mktemp("driven"), np.array(SHORT, dtype=float), (-5.0, -2.0, 0.0, 2.0, 5.0)
+    )
 
 
 def test_a_zero_of_fx_does_not_make_up_for_a_difference_of_driving_and_braking(driven):
@@ -79,3 +86,15 @@ def test_beyond_the_tested_slip_the_change_of_the_formula_is_no_knowledge(driven
         half = 1.96 * found[f"u_{name}_best_N"]
         assert np.mean(off < half) > 0.9
         assert np.sqrt(np.mean(half**2) / np.mean(off**2)) < 6.0
+
+
+def test_sideslip_of_the_other_sign_is_known_by_its_mirror_image(tmp_path):
+    """As many drive and brake programmes are: what is left unknown is how much a tyre differs from its mirror image."""
+    one_sided = campaign(tmp_path, np.array([a for a in SHORT if a >= 0.0], dtype=float), (0.0, 2.0, 5.0))
+    alpha, kappa = (x.ravel() for x in np.meshgrid(np.linspace(-7.0, -1.0, 13), np.linspace(-0.1, 0.1, 5)))
+    kappa = np.where(alpha < -5.0, 0.0, kappa)
+    true = forces(alpha, 1700.0, kappa)["Fy_N"]
+    found = one_sided.predict(alpha_deg=alpha, gamma_deg=0.0, Fz_N=1700.0, kappa=kappa)
+    half = 1.96 * found["u_Fy_best_N"]
+    assert np.mean(np.abs(found["Fy_best_N"] - true) < half) > 0.9
+    assert np.sqrt(np.mean(half**2) / np.mean(true**2)) < 0.2
