@@ -233,3 +233,15 @@ def test_scalars_and_arrays_agree(tyre):
         one = tyre(1500.0, float(a), 0.2, 0.01, -0.5)
         assert float(one.Fy) == pytest.approx(many.Fy[i], rel=1e-12)
         assert float(one.Mz) == pytest.approx(many.Mz[i], rel=1e-12)
+
+
+@pytest.mark.parametrize("way", [-1.0, 1.0])
+def test_a_wheel_that_turns_on_the_spot_has_the_moment_of_its_name(way):
+    """Its turn slip is infinite, its side force 0, and its moment M_zphi_infinity of 4.E95."""
+    tyre = tir.read(VECTORS / "moto_front.tir")
+    out = tyre(1800.0, phi_t=np.array([way * np.inf, way * 1e9]))
+    mu_y = abs(tyre.state(1800.0).mu_y)
+    most = tyre["QCRP1"] * mu_y * tyre["UNLOADED_RADIUS"] * 1800.0 * np.sqrt(1800.0 / tyre["FNOMIN"])
+    assert out.Fy == pytest.approx(0.0, abs=1e-3)
+    assert np.abs(out.Mz) == pytest.approx(most, rel=1e-3)
+    assert tyre(1800.0, phi_t=way * np.inf).Mz == pytest.approx(out.Mz[0])

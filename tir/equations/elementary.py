@@ -36,6 +36,13 @@ def away_from_zero(x):
     return x + TINY * sign(x)
 
 
+def finite(x):
+    """x, or a value that is nearly infinite in place of an infinite one."""
+    largest = 1.0 / TINY
+    x = select(real(x) > largest, largest, x)
+    return select(real(x) < -largest, -largest, x)
+
+
 def at_most_one(E, limits):
     """Curvature factor held at <= 1 when limits are asked for; left alone otherwise."""
     return select(limits & (np.real(E) > 1.0), 1.0, E)

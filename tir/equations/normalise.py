@@ -2,7 +2,7 @@
 
 from typing import Any, NamedTuple
 
-from tir.equations.elementary import arctan, away_from_zero, cos, sin, tan
+from tir.equations.elementary import arctan, away_from_zero, cos, finite, sin, tan
 
 
 class OperatingCondition(NamedTuple):
@@ -86,7 +86,7 @@ def inputs(p, at: OperatingCondition, switches: Switches = PLAIN, Fz_moment=None
         sin_gamma=sin(gamma),
         cos_alpha=cos(alpha),  # 4.E6
         tan_alpha=tan(alpha),
-        phi_t=at.phi_t,
+        phi_t=finite(at.phi_t),  # a wheel that turns on the spot has an infinite one
         pressure=pressure,
         dfz=relative_load(p, Fz),
         dpi=(pressure - p.NOMPRES) / p.NOMPRES,  # 4.E2b
