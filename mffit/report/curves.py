@@ -173,4 +173,5 @@ def _along_curves(points: Points, curves: Sequence[Curve]) -> Points:
                 else np.full(steps, np.median(here))
             )
     rows = np.repeat([curve.index[0] for curve in curves], steps)
-    return points.select(rows).replace(**{name: np.concatenate(values) for name, values in columns.items()})
+    there = {name: np.concatenate(values) for name, values in columns.items()}
+    return points.select(rows).replace(**there, time=np.full(len(rows), np.nan))  # steady, so without lag

@@ -49,3 +49,15 @@ def test_noise_of_a_channel_is_that_of_its_points(result):
 def test_disc_and_flat_track_are_told_apart():
     assert view_of(made_result(rig={"path_radius": R})).on_disc
     assert not view_of(made_result(rig={"type": "flat-track"}, phi_t=0.0)).on_disc
+
+
+def test_the_line_of_a_moving_sweep_is_the_tyre_at_rest():
+    """A lag belongs to the samples, whose times a line has not."""
+    points = made_points(programme())
+    points = points.replace(V=np.full(len(points), 10.0))
+    moving = points.replace(time=np.arange(len(points)) * 0.1)
+    tyre, found = tir.read(TRUE), curves(points)
+    lagging = Simulation.of(tyre, Faults(relaxation_m=0.4))
+    lines, steady = model_lines(lagging, moving, found), model_lines(Simulation.of(tyre), points, found)
+    for curve in found:
+        assert lines[curve].raw["Fy"] == pytest.approx(steady[curve].raw["Fy"])
