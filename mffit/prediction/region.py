@@ -71,7 +71,8 @@ def missed_at_readings(
     ``known`` is the predictor of the ``fitted`` file; ``model`` has the fitted model's readings at the points, rig errors
     included.
     """
-    swept = set(swept_of(points, inputs_of(points)).values())
+    moved = swept_of(points, inputs_of(points))
+    swept = set(moved.values())
     level = {
         name: levels.level_values(getattr(points, name), kind)
         for name, kind in LEVELS.items()
@@ -89,7 +90,9 @@ def missed_at_readings(
         missed, residual = known.missed(name, known.points(fitted, at)), points.channel(name) - model[name]
         read, u = np.isfinite(residual), run[f"u_{column(name, 'run')}"].to_numpy()
         seen: dict[str, list[_Seen]] = {side: [] for side in SIDES}
-        for rows in (part for own in groups if len(part := own[read[own]])):
+        own_slip = SLIP.get(name)
+        of_grip = [own for own in groups if own_slip not in swept or moved[points.sweep[own[0]]] == own_slip]
+        for rows in (part for own in of_grip if len(part := own[read[own]])):
             here = np.array([values[rows[0]] for values in level.values()])
             of_sign = _of_sweep(here, force[name][rows], residual[rows], u[rows])
             for side, one in of_sign.items():
@@ -98,9 +101,9 @@ def missed_at_readings(
             channel=name,
             size=rms(missed[read]),
             largest=float(np.max(np.abs(force[name][read]), initial=1e-12)),
-            is_grip=SLIP.get(name) in swept,
+            is_grip=own_slip in swept,
             region=_clearest(tuple(level), seen),
-            slopes=missed_slopes(known, fitted, points, name, SLIP[name]) if SLIP.get(name) in swept else (),
+            slopes=missed_slopes(known, fitted, points, name, own_slip) if own_slip in swept else (),
         )
     return found
 

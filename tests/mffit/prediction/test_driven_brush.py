@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -12,6 +13,8 @@ import tomli_w
 from brush import SHORT, Brush
 from conftest import Built, build
 
+from mffit.prediction import region
+from mffit.prediction.region import missed_at_readings
 from tir import TirWarning
 
 TYRE = Brush(drive=1.2, carcass=2e5)
@@ -98,3 +101,13 @@ def test_sideslip_of_the_other_sign_is_known_by_its_mirror_image(tmp_path):
     half = 1.96 * found["u_Fy_best_N"]
     assert np.mean(np.abs(found["Fy_best_N"] - true) < half) > 0.9
     assert np.sqrt(np.mean(half**2) / np.mean(true**2)) < 0.2
+
+
+def test_the_grip_of_fx_is_judged_by_sweeps_of_slip(driven, monkeypatch):
+    """The Fx of a freely rolling wheel is its resistance: of 18 sweeps, three are of sideslip."""
+    seen: dict[str, list[Any]] = {}
+    monkeypatch.setattr(region, "_clearest", lambda names, found: seen.update(found))
+    result = driven.result
+    for name, sweeps in {"Fx": 15, "Fy": 3}.items():
+        missed_at_readings(result.prediction, result.fit.tyre, result.points, result.fit.model, {name})
+        assert len(seen[""]) == sweeps
