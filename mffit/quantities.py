@@ -52,8 +52,8 @@ class QuantityName(NamedTuple):
         return f"{name} [{self.unit}]" if self.unit_behind else name
 
     def of(self, value: float) -> str:
-        """A rounded value with its unit: ``1500 N``."""
-        return f"{round(value) + 0.0:.0f} {self.unit}"
+        """A rounded value with its unit: ``1500 N``; a slip has none: ``0.1``."""
+        return f"{round(value) + 0.0:.0f} {self.unit}" if self.unit_behind else f"{round(value, 2) + 0.0:g}"
 
 
 def column(channel: str, of: str = "") -> str:

@@ -24,6 +24,8 @@ def test_what_has_no_unit_is_not_given_one():
     assert EPSILON.column("eps") == "eps"
     assert FORCE.column("force") == "force [N]"
     assert FORCE.of(331.4) == "331 N"
+    assert CONDITIONS["kappa"].of(-0.052) == "-0.05"
+    assert CONDITIONS["kappa"].of(-0.001) == "0"
 
 
 @pytest.mark.parametrize("quantity", [*CONDITIONS.values(), *CHANNELS.values(), *DIRECT.values()])

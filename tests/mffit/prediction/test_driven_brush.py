@@ -15,6 +15,8 @@ from conftest import Built, build
 
 from mffit.prediction import region
 from mffit.prediction.region import missed_at_readings
+from mffit.report.build_view import view_of
+from mffit.report.figures.missed import missed
 from tir import TirWarning
 
 TYRE = Brush(drive=1.2, carcass=2e5)
@@ -111,3 +113,11 @@ def test_the_grip_of_fx_is_judged_by_sweeps_of_slip(driven, monkeypatch):
     for name, sweeps in {"Fx": 15, "Fy": 3}.items():
         missed_at_readings(result.prediction, result.fit.tyre, result.points, result.fit.model, {name})
         assert len(seen[""]) == sweeps
+
+
+def test_lines_of_the_model_error_are_at_conditions_that_its_sweeps_held(driven):
+    """Slip was run at five sideslips, and sideslip at no slip; a line has the name of no other."""
+    panels = [panel for row in missed(view_of(driven.result)).rows for panel in row]
+    lines = {panel.title: [one.name for one in panel.series] for panel in panels}
+    assert lines["Fx, by sideslip"] == ["-5 deg", "0 deg", "5 deg"]
+    assert lines["Fy, by longitudinal slip"] == ["0"]
