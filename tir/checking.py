@@ -16,7 +16,7 @@ from tir.evaluate import DIVISORS
 from tir.formula import OLD_KEYS
 from tir.mode import BLOCK
 from tir.parameters import BY_NAME, TABLE, TURN_SLIP
-from tir.record import TyreRecord
+from tir.record import DISTRUSTED, TyreRecord
 from tir.targets import FITTYPS, UNKNOWN_DIGIT, fittyps_text, known_target, use_mode_words
 from tir.tyre import Tyre
 from tir.unit_check import in_fitting_units
@@ -139,6 +139,7 @@ def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
         *_ranges(tyre),
         *_mode(tyre),
         *_old_keys(tyre),
+        *_own_judgement(tyre),
     ]
     if "USE_MODE" in tyre.present and tyre.turn_slip and (not programs or any(p.siemens for p in programs)):
         found.append(_warning("USE_MODE", LICENCE))
@@ -325,6 +326,11 @@ def _old_keys(tyre: Tyre) -> Iterator[Problem]:
     if old:
         said = f"{', '.join(old)} are keys of MF 5.2, which MF 6 ignores: was an old file renamed?"
         yield _warning(old[0], said)
+
+
+def _own_judgement(tyre: Tyre) -> Iterator[Problem]:
+    if reasons := tyre.provenance.get(DISTRUSTED):
+        yield _warning("", f"the file says of itself that it is not to be trusted: {reasons}")
 
 
 def _spin(tyre: Tyre) -> Iterator[Problem]:

@@ -27,6 +27,8 @@ from tir.parameters import BY_NAME, TABLE
 
 TextKey = Literal["TYRESIDE", "PROPERTY_FILE_FORMAT"]
 """Parameters of the table that are text; all others are numbers."""
+DISTRUSTED = "NOT TO BE TRUSTED"
+"""Key of the reasons in the provenance of a file that the build which wrote it does not trust."""
 EMPTY: Mapping[str, Any] = MappingProxyType({})
 
 

@@ -27,12 +27,11 @@ from mffit.rig_errors import T_REF, error_of, unit_of
 from mffit.suspicion import Trust
 from tir import Tyre
 from tir.errors import listed
+from tir.record import DISTRUSTED
 from tir.temperature import CURVED_BY, HIGHEST, LOWEST, REFERENCE, RIG, terms_of
 
 PROGRAM = "program"
 """Key of the version that wrote a file."""
-DISTRUSTED = "NOT TO BE TRUSTED"
-"""Key of the reasons in a file that is not to be trusted."""
 BY_HAND = "set by hand"
 """Key of what the engineer set in [coefficients]."""
 METHOD = "method"

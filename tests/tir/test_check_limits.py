@@ -160,3 +160,9 @@ def test_a_file_that_ends_before_a_section_says_which_moment_is_default(tmp_path
     said = "all of Mz is default"
     assert not any(said in problem.sentence for problem in tir.read(whole).problems)
     assert any(said in problem.sentence for problem in tir.read(cut).problems)
+
+
+def test_a_file_that_is_not_to_be_trusted_says_so_again():
+    tyre = TYRE.annotate(provenance={"NOT TO BE TRUSTED": "run 3 contradicts the others"})
+    new = {problem.sentence for problem in tir.check(tyre)} - {problem.sentence for problem in tir.check(TYRE)}
+    assert new == {"the file says of itself that it is not to be trusted: run 3 contradicts the others"}
