@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -56,7 +57,11 @@ class DiagnosisProblem:
         if offset is not None:
             self.measured = self.measured + offset
         self._at_amplitudes: dict[frozenset[tuple[str, float]], DiagnosisProblem] = {}
-        self.null = self._fitted((), {})
+
+    @cached_property
+    def null(self) -> Hypothesis:
+        """The hypothesis without effects."""
+        return self._fitted((), {})
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -82,7 +87,7 @@ class DiagnosisProblem:
         if key not in kept:
             other = copy(self)
             other.amplitude, other.noise = amplitude, self.structure.noise(amplitude)
-            other.null = other._fitted((), {})
+            vars(other).pop("null", None)  # that of the other amplitude
             while len(kept) >= constants.MOST_AMPLITUDES_KEPT:
                 del kept[next(iter(kept))]
             kept[key] = other
@@ -180,8 +185,13 @@ class DiagnosisProblem:
         ]
         return known.names, slopes, changes
 
-    def columns(self, state: Simulation, effects: Sequence[Effect]) -> dict[Effect, list[np.ndarray]]:
-        """By effect, changes of the readings (c n, k) at its usual size: by derivatives, and by finite steps to each start."""
+    def columns(
+        self, state: Simulation, effects: Sequence[Effect], steps: int | None = None
+    ) -> dict[Effect, list[np.ndarray]]:
+        """By effect, changes of the readings (c n, k) at its usual size: by derivatives, and by finite steps to each start.
+
+        ``steps`` is the largest number of these steps; None: all.
+        """
         names = [free.name for free in moving(effects)]
         slopes = slopes_of(state, self.points, names, self.channels)
         here, out = np.nan_to_num(self.predict(state)), {}
@@ -194,17 +204,18 @@ class DiagnosisProblem:
             spreads = [free.spread * anchor(free, self.start, self.points)[1] for free in frees]
             out[effect] = [own * spreads]
             if len(frees) == 1:
-                out[effect] += self._scanned(state, frees[0], spreads[0], here)
+                out[effect] += self._scanned(state, frees[0], spreads[0], here, steps)
         return out
 
-    def _scanned(self, state: Simulation, free: Free, spread: float, here: np.ndarray) -> list[np.ndarray]:
-        """Changes of the readings (c n, 1) by finite steps to every start of a number, scaled to the usual size."""
+    def _scanned(
+        self, state: Simulation, free: Free, spread: float, here: np.ndarray, steps: int | None
+    ) -> list[np.ndarray]:
+        """Changes of the readings (c n, 1) by finite steps to the starts of a number, scaled to the usual size."""
         value, unit = state.number(free.name, self.points), anchor(free, self.start, self.points)[1]
         places = [float(np.clip(value + step * unit, free.lower, free.upper)) for step in free.scan if step]
         return [
             (self._moved(state, {free.name: place}, here) * (spread / (place - value)))[:, None]
-            for place in places
-            if place != value
+            for place in [place for place in places if place != value][:steps]
         ]
 
     def _moved(self, state: Simulation, numbers: Mapping[str, float], here: np.ndarray) -> np.ndarray:

@@ -121,9 +121,8 @@ class ScatterOfChannel(ReadOnlyArrays):
             return value, np.array([*slopes.values()])
 
         search = ParameterSearch({n: PARAMETERS[n] for n in by.names}, evidence, len(self.sweep))
-        x = search.most_probable(None if near is None else near.x)
-        probability = search.log_probability(x) + math.log(by.probability)
-        return Described(by, dict(zip(by.names, x.tolist(), strict=True)), probability)
+        x, log = search.most_probable(None if near is None else near.x)
+        return Described(by, dict(zip(by.names, x.tolist(), strict=True)), log + math.log(by.probability))
 
     def standardised(self, found: Described) -> np.ndarray:
         """Error (m,) of every reading's prediction from all others, over its standard uncertainty at weight 1."""
@@ -166,7 +165,7 @@ def learned_noise(search: Search, state: Simulation) -> Noise:
     residual = problem.measured - predicted
     nothing = np.zeros((len(predicted), 0))
     # The derivative by each effect, and its first finite step for numbers whose derivative vanishes at zero.
-    columns = {e: groups[:2] for e, groups in problem.columns(state, search.candidates).items()}
+    columns = problem.columns(state, search.candidates, steps=1)
     runs = {e.id: g[0] for e, g in columns.items() if e.differs_by_run}
     others = [g for e, groups in columns.items() if not e.differs_by_run for g in groups]
     generous = constants.GENEROUS_EFFECT_SIZE

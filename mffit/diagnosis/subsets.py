@@ -27,8 +27,10 @@ class Member:
 
     effect: Effect
     columns: range  #: among the inner products, of which the first is the residual
-    numbers: tuple[FreeNumber | None, ...]
-    """By column, the number with its prior of which the column is a change by one standard deviation; None for a switch."""
+
+
+ON = FreeNumber(SWITCH, 0.0, spread=1.0)
+"""The number of a column that is the change by a switch."""
 
 
 Members = tuple[int, ...]
@@ -50,6 +52,9 @@ class LinearSets:
         }
         state = at.state.with_numbers(at_rest) if at_rest else at.state
         rows, away, first = [problem.whitened(state)], [], 1
+        self._numbers = [
+            ON
+        ]  # by row; each column is a change by one standard deviation of its number's prior
         for effect, groups in problem.columns(state, candidates).items():
             numbers = priors[effect]
             moved = [known.get(n.name, 0.0) for n in numbers]
@@ -59,13 +64,18 @@ class LinearSets:
                 groups, moved = problem.columns(off, [effect])[effect], [1.0]
             for columns in groups[: 1 if present else None]:
                 end = first + columns.shape[1]
-                self.members.append(Member(effect, range(first, end), numbers or (None,)))
+                self.members.append(Member(effect, range(first, end)))
+                self._numbers.extend(numbers or (ON,))
                 rows.append(not_too_steep(problem.noise.whiten(columns)))
                 away.extend(moved or [0.0])
                 first = end
         whole = np.column_stack(rows)
         whole[:, 0] += whole[:, 1:] @ np.array(away)
         self._products = whole.T @ whole
+        self._expected, self._spread, self._lower, self._upper = np.array(
+            [(n.expected, n.spread, n.lower, n.upper) for n in self._numbers]
+        ).T
+        self._declared = np.array([n.name in problem.declared for n in self._numbers])
         self._price = [log_prior(one.effect, problem.start) - price(len(candidates)) for one in self.members]
         self._known: dict[Members, tuple[float, np.ndarray]] = {}
 
@@ -83,8 +93,11 @@ class LinearSets:
 
     def numbers(self, members: Members) -> dict[str, float]:
         """The most probable numbers of a set, within their bounds."""
-        found = self._values(members, self._solved(members)[1])
-        return {n.name: float(np.clip(value, n.lower, n.upper)) for n, value in found if n is not None}
+        columns = self._columns(members)
+        values = self._expected[columns] + self._spread[columns] * self._solved(members)[1]
+        values = np.clip(values, self._lower[columns], self._upper[columns])
+        found = zip((self._numbers[c] for c in columns), values.tolist(), strict=True)
+        return {n.name: value for n, value in found if n is not ON}
 
     def weight(self, members: Members) -> float:
         """Log posterior of a set up to a constant: evidence, price of every effect, and prior order of causes."""
@@ -103,28 +116,27 @@ class LinearSets:
             self._known[members] = self._solve(members)
         return self._known[members]
 
-    def _values(self, members: Members, amounts: np.ndarray) -> list[tuple[FreeNumber | None, float]]:
-        """The number of every column of a set, and its value at the amounts (k,) of the columns."""
-        numbers = [n for k in members for n in self.members[k].numbers]
-        found = zip(numbers, amounts.tolist(), strict=True)
-        return [(n, x if n is None else n.expected + n.spread * x) for n, x in found]
+    def _columns(self, members: Members) -> np.ndarray:
+        """The columns (k,) of a set."""
+        return np.array([c for k in members for c in self.members[k].columns], dtype=int)
 
-    def _informed(self, members: Members) -> Informed:
-        """The numbers of a set, in units of their priors, as the readings inform about them."""
-        columns = [c for k in members for c in self.members[k].columns]
-        return Informed.by(self._products[np.ix_(columns, columns)], self._products[columns, 0])
+    def _informed(self, columns: np.ndarray) -> Informed:
+        """The numbers of some columns (k,), in units of their priors, as the readings inform about them."""
+        return Informed.by(self._products[columns[:, None], columns], self._products[columns, 0])
 
     def _solve(self, members: Members) -> tuple[float, np.ndarray]:
         """Weight of a set, and the most probable amounts (k,) of its columns."""
         weight = sum(self._price[k] for k in members) - 0.5 * float(self._products[0, 0])
         if not members:
             return weight, np.zeros(0)
-        found = self._informed(members)
-        over = np.zeros(len(found.mean))  # beyond the bounds, in standard deviations of the priors
-        for i, (n, value) in enumerate(self._values(members, found.mean)):
-            if n is not None:
-                weight += beyond_declaration(n, value, self.problem.declared)
-                over[i] = max(n.lower - value, value - n.upper, 0.0) / n.spread
+        columns = self._columns(members)
+        found, spread = self._informed(columns), self._spread[columns]
+        values = self._expected[columns] + spread * found.mean
+        for c, value in zip(columns.tolist(), values.tolist(), strict=True):
+            if self._declared[c]:
+                weight += beyond_declaration(self._numbers[c], value, self.problem.declared)
+        over = np.maximum(self._lower[columns] - values, values - self._upper[columns])
+        over = np.maximum(over, 0.0) / spread  # beyond the bounds, in standard deviations of the priors
         moved_back = float(np.sum((over / found.u) ** 2)) if over.any() else 0.0
         return weight + found.gain - 0.5 * moved_back, found.mean
 
@@ -143,7 +155,7 @@ class LinearSets:
         Without columns b, the sum of squares rises by x_b' V_bb^-1 x_b and the log determinant of the information by that of
         V_bb, where V is the inverse of the information.
         """
-        found = self._informed(members)
+        found = self._informed(self._columns(members))
         x, V, worth, end = found.mean, found.covariance, [], 0
         for k in members:
             place = slice(end, end := end + len(self.members[k].columns))

@@ -83,8 +83,11 @@ class ParameterSearch(NamedTuple):
         priors = [one.prior(at) for one, at in zip(self.parameters.values(), x.tolist(), strict=True)]
         return value + sum(log for log, _ in priors), slope + [by for _, by in priors]
 
-    def most_probable(self, near: Mapping[str, float] | None = None) -> np.ndarray:
-        """The parameters (k,) of the largest density; the search begins at those of ``near``, else at their usual starts."""
+    def most_probable(self, near: Mapping[str, float] | None = None) -> tuple[np.ndarray, float]:
+        """The parameters (k,) of the largest density, and the log probability of the model by Laplace's approximation there.
+
+        The search begins at the parameters of ``near``, else at their usual starts.
+        """
         begin = near or {}
 
         def loss(x: np.ndarray) -> tuple[float, np.ndarray]:
@@ -103,18 +106,11 @@ class ParameterSearch(NamedTuple):
         found = scipy.optimize.minimize(
             loss, start, jac=True, method="L-BFGS-B", bounds=bounds, options=options
         )
-        return np.asarray(found.x)
-
-    def log_probability(self, x: np.ndarray) -> float:
-        """Log probability of the model, by Laplace's approximation around its most probable parameters (k,)."""
-        value, slope = self.density(x)
-        step = float(constants.EVIDENCE_STEP)
-        moved = [self.density(x + one)[1] for one in step * np.eye(len(x))]
-        curvature = (slope - np.array(moved)) / step
+        x, step = np.asarray(found.x), float(constants.EVIDENCE_STEP)
+        curvature = np.array([loss(x + one)[1] - found.jac for one in step * np.eye(len(x))]) / step
         axes = np.linalg.eigvalsh(0.5 * (curvature + curvature.T))
-        return value + 0.5 * float(
-            np.sum(np.log(2.0 * math.pi / np.maximum(axes, constants.LEAST_CURVATURE)))
-        )
+        width = np.log(2.0 * math.pi / np.maximum(axes, constants.LEAST_CURVATURE))
+        return x, 0.5 * float(np.sum(width)) - float(found.fun)
 
 
 class Scored(NamedTuple):

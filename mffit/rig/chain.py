@@ -161,16 +161,15 @@ class Chain:
     def turned_by_moment(self, alpha: Any, give: Any) -> Any:
         """Sideslip (n,) [rad] of a wheel on a steering with compliance ``give`` [rad/Nm], unloaded at ``alpha`` [rad]."""
         k, start = float(plain(give)), plain(alpha)
-        held = np.broadcast_to(start, len(self.points))
-        slope: Any = 0.0
-        if k:
-            settled_conditions = self._without_history()
-            for _ in range(12):  # Newton steps; three are usual
-                moment, slope = settled_conditions.moment_and_slope(held)
-                move = (start + k * moment - held) / (1.0 - k * slope)
-                held = held + move
-                if np.max(np.abs(move)) < 1e-7:  # [rad]
-                    break
+        held, conditions = np.broadcast_to(start, len(self.points)), self._without_history()
+        if not k:  # only the derivative by the compliance itself
+            return alpha + give * conditions._moment(held)
+        for _ in range(12):  # Newton steps; three are usual
+            moment, slope = conditions.moment_and_slope(held)
+            move = (start + k * moment - held) / (1.0 - k * slope)
+            held = held + move
+            if np.max(np.abs(move)) < 1e-7:  # [rad]
+                break
         if self._tape is None:
             return held
         # One Newton step with traced numbers keeps the solution and gives it the derivatives by the implicit function theorem.
