@@ -67,21 +67,19 @@ class MissedChannel(ReadOnlyArrays):
         self,
         settings: np.ndarray,
         force: np.ndarray,
-        slopes: np.ndarray,
-        of_tyre: np.ndarray,
+        by_numbers: Sequence[np.ndarray],
         left: Remaining,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The model error (n,), the variance of the tyre's force (n,), and the variance of a reading of it (n,).
 
         The estimate keeps the file's coefficients, so it is 0 where the formula describes the tyre exactly; errors of the
-        coefficients count in the variance. ``force`` (n,) and ``slopes`` (n, k) are that of the formula and its derivatives at
-        the conditions ``settings`` (n, d), ``of_tyre`` (k,) is the mask of the coefficients, ``left`` what remains of the model
-        error where nothing was tested.
+        coefficients count in the variance. ``force`` (n,) is that of the formula at the conditions ``settings`` (n, d),
+        ``by_numbers`` are :meth:`by_numbers` there, ``left`` is what remains of the model error where nothing was tested.
         """
         untold, functions = self._functions(settings)
         functions = functions * left.share[:, None]
-        rows = self._rows(functions, slopes * of_tyre, slopes)
-        mean, reading = (np.sum(one**2, axis=1) for one in rows)
+        shared = functions @ self.root[: len(self.missed)]
+        mean, reading = (np.sum((shared + one) ** 2, axis=1) for one in by_numbers)
         # Between the lowest tested load and none, where it is zero again, the model error is free as a bridge is.
         share = (2.0 * left.slip + untold) * left.load**2 + left.load * (1.0 - left.load)
         unlike = share * self.components.missed**2 + self._strays(settings) * force**2
@@ -92,22 +90,22 @@ class MissedChannel(ReadOnlyArrays):
         return np.asarray(self._functions(settings)[1] @ self.missed)
 
     def u_between(self, settings: np.ndarray, slopes: np.ndarray, *, at_zero: bool) -> float:
-        """Standard uncertainty of the force's difference between two conditions; ``settings`` and ``slopes`` as in :meth:`at`.
+        """Standard uncertainty of the difference of two forces at the ``settings`` (2, d), with the derivatives ``slopes`` (2, k).
 
         Conditions ``at_zero`` of a slip are so close that readings beside them need not show how the force bends there.
         """
         untold, functions = self._functions(settings)
-        ((one, other),) = self._rows(functions, slopes)
+        one, other = np.hstack([functions, slopes]) @ self.root
         unlike = np.sum(untold)
         if at_zero:
             unlike = self.smooth.unseen(settings, np.array(self.components.lengths))
         return float(np.sqrt(np.sum((one - other) ** 2) + unlike * self.components.missed**2))
 
-    def _rows(self, functions: np.ndarray, *slopes: np.ndarray) -> list[np.ndarray]:
-        """Roots (n, r) of the covariance of forces at conditions with these ``functions`` (n, m), for each ``slopes`` (n, k)."""
-        of_functions, of_numbers = np.split(self.root, [len(self.missed)])
-        shared = functions @ of_functions
-        return [shared + one @ of_numbers for one in slopes]
+    def by_numbers(self, slopes: np.ndarray, of_tyre: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Roots (n, r) of the covariance of forces with these derivatives (n, k), by the numbers ``of_tyre`` (mask), and by all."""
+        own = self.root[len(self.missed) :]
+        tyre = slopes[:, of_tyre] @ own[of_tyre]
+        return tyre, tyre + slopes[:, ~of_tyre] @ own[~of_tyre]
 
     def _functions(self, settings: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """As :meth:`SmoothFunctions.faded` at the likely lengths."""
@@ -369,9 +367,9 @@ class Predictor(ReadOnlyArrays):
 
         The variance of a reading includes the scatter over the conditions that are not stated.
         """
-        left = self._left(channel, points)
+        left, by_numbers = self._left(channel, points), channel.by_numbers(slopes, self._of_tyre)
         found = [
-            channel.at(settings, force, slopes, self._of_tyre, left)
+            channel.at(settings, force, by_numbers, left)
             for settings in _settings(points, channel.smooth.inputs)
         ]
         means, variances, readings = (np.array(own) for own in zip(*found, strict=True))
@@ -391,7 +389,9 @@ def _mixed(each: Sequence[PredictedForce]) -> PredictedForce:
 def _settings(points: Points, inputs: Sequence[Input]) -> Iterator[np.ndarray]:
     """The conditions (n, d), once for every combination of values of the conditions that are not stated."""
     stated = _stated(points, inputs)
-    for values in itertools.product(*(one.averaged or (np.nan,) for one in inputs)):
+    unstated = ~np.all(np.isfinite(stated), axis=0)
+    each = (one.averaged if asked else () for one, asked in zip(inputs, unstated, strict=True))
+    for values in itertools.product(*(own or (np.nan,) for own in each)):
         yield np.where(np.isfinite(stated), stated, values)
 
 
