@@ -90,7 +90,7 @@ class MissedChannel(ReadOnlyArrays):
         return np.asarray(self._functions(settings)[1] @ self.missed)
 
     def u_between(self, settings: np.ndarray, slopes: np.ndarray, *, at_zero: bool) -> float:
-        """Standard uncertainty of the difference of two forces at the ``settings`` (2, d), with the derivatives ``slopes`` (2, k).
+        """Standard uncertainty of the difference of two forces at ``settings`` (2, d), with their derivatives ``slopes`` (2, k).
 
         Conditions ``at_zero`` of a slip are so close that readings beside them need not show how the force bends there.
         """
@@ -102,7 +102,7 @@ class MissedChannel(ReadOnlyArrays):
         return float(np.sqrt(np.sum((one - other) ** 2) + unlike * self.components.missed**2))
 
     def by_numbers(self, slopes: np.ndarray, of_tyre: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Roots (n, r) of the covariance of forces with these derivatives (n, k), by the numbers ``of_tyre`` (mask), and by all."""
+        """Roots (n, r) of the covariance of forces with these ``slopes`` (n, k): by numbers ``of_tyre`` (mask), and by all."""
         own = self.root[len(self.missed) :]
         tyre = slopes[:, of_tyre] @ own[of_tyre]
         return tyre, tyre + slopes[:, ~of_tyre] @ own[~of_tyre]
