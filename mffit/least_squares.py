@@ -219,7 +219,7 @@ def solve(
     """
     objective = Objective.of(problem, numbers)
     x = np.clip([n.start for n in numbers], objective.lower, objective.upper)
-    here, at_x = problem.linear(x), True
+    here: Linear | None = problem.linear(x)
     cost = objective.cost(x, here.data, here.limits)
     damping, taken, close = 1e-3, 0, False
     form, bend = Quadratic.around(objective, x, here), np.zeros((len(x), len(x)))
@@ -230,12 +230,12 @@ def solve(
         if step is None:
             break
         taken += 1
-        move, x, cost, damping, at_x = step.x - x, step.x, step.cost, step.damping, False
+        move, x, cost, damping, here = step.x - x, step.x, step.cost, step.damping, step.here
         if not close and taken < max_steps:
-            here, at_x, before = problem.linear(x), True, form
+            here, before = problem.linear(x), form
             form = Quadratic.around(objective, x, here)
             bend = _bend(bend, move, before, form)
-    return Solution(objective, x, cost, taken, here if at_x else None)
+    return Solution(objective, x, cost, taken, here)
 
 
 def touches(value: float, lower: float, upper: float) -> bool:
@@ -290,6 +290,7 @@ class _Step(NamedTuple):
     x: np.ndarray
     cost: float
     damping: float  #: for the next step
+    here: Linear | None = None  #: residuals and derivatives at ``x``, of the last step
 
 
 def _step(
@@ -320,8 +321,12 @@ def _step(
         if promised <= least and not last:
             return None
         trial = np.clip(x + move, objective.lower, objective.upper)
-        new = objective.cost(trial, *objective.problem.residual(trial))
-        return _Step(trial, new, next_damping(damping, cost - new, promised))
+        here = (
+            objective.problem.linear(trial) if last else None
+        )  # the derivatives at the solution are asked for
+        data, limits = objective.problem.residual(trial) if here is None else (here.data, here.limits)
+        new = objective.cost(trial, data, limits)
+        return _Step(trial, new, next_damping(damping, cost - new, promised), here)
 
     while damping < 1e12:
         found = [tried(form, form.move(damping), damping) for form in forms]

@@ -45,10 +45,9 @@ def finite_median(x: np.ndarray) -> float:
     return float(np.median(x)) if len(x) else float("nan")
 
 
-def robust(x: np.ndarray, centre: float = 0.0) -> float:
-    """Robust standard deviation of the finite values around a centre, from the median; NaN if there are none."""
-    x = x[np.isfinite(x)]
-    return NORMAL * float(np.median(np.abs(x - centre))) if len(x) else float("nan")
+def robust(x: np.ndarray) -> float:
+    """Robust standard deviation of the finite values around zero, from the median; NaN if there are none."""
+    return NORMAL * finite_median(np.abs(x))
 
 
 def usual_size(groups: Iterable[np.ndarray]) -> float:

@@ -14,7 +14,7 @@ from mffit.config import Config
 from mffit.config.toml_file import toml_text
 from mffit.csv_tables import write_csv
 from mffit.numbers import Numbers, to_json
-from mffit.output import output_folder
+from mffit.output import BUILT, output_folder
 from mffit.pipeline.inputs import inputs_of, project_of
 from mffit.points import Points
 from mffit.points.stretch import StretchNote, stretch_table
@@ -24,12 +24,10 @@ from mffit.results import BuildResult
 from mffit.suspicion import marks
 from tir import Quantity, Tyre
 
-USES = ("turn-slip", "normal")
-"""Uses of a property file that are part of its name where it is not the plain one."""
 REPORT = "report.html"
 EXPLAINED = "explained.txt"
 """What ``mffit build --explain`` prints."""
-WRITTEN = ("result.json", "information.json", prediction.FILE, "points.csv", EXPLAINED, REPORT)
+WRITTEN = (BUILT, "information.json", prediction.FILE, "points.csv", EXPLAINED, REPORT)
 """Files that every build writes in addition to its property files."""
 FOLDER, INDEX = "ensemble", "index.csv"
 NUMBERS = ("epsilon_gamma", *COMPARED)
@@ -49,7 +47,7 @@ def write_build(
     with output_folder(out, by="build", of=project_of(config), protected=inputs_of(config)) as folder:
         for use, name in result.files.items():
             result.tyres[use].write(folder / name)
-        as_json.write(folder / "result.json", result)
+        as_json.write(folder / BUILT, result)
         _write_information(folder / "information.json", result)
         (folder / EXPLAINED).write_text(f"{text.build_explained(result)}\n", encoding="utf-8")
         write_csv(points_table(result), folder / "points.csv")

@@ -14,7 +14,7 @@ from mffit.config import Config
 from mffit.errors import InputError
 from mffit.fleet import read
 from mffit.made import made
-from mffit.output import written_by
+from mffit.output import BUILT, written_by
 from mffit.pipeline.build_output import EXPLAINED, FOLDER, REPORT, WRITTEN, resolved_text
 from mffit.pipeline.building import build
 from mffit.pipeline.inputs import input_hashes
@@ -146,7 +146,7 @@ def is_current(config: Config, out: Path, *, ensemble: int = 0, with_report: boo
     """
     kept = written_by(out, "build")
     try:
-        result = json.loads((out / "result.json").read_text(encoding="utf-8"))
+        result = json.loads((out / BUILT).read_text(encoding="utf-8"))
         files = [*WRITTEN, "resolved.toml", *result["files"].values()]
         drawn = sum(name.startswith(f"{FOLDER}/") and name.endswith(".tir") for name in kept)
         stated, now = result["made"], made(input_hashes(config))
@@ -164,4 +164,4 @@ def is_current(config: Config, out: Path, *, ensemble: int = 0, with_report: boo
 def explained(out: Path) -> tuple[str, dict[str, Any]]:
     """All that is said about a build, and the content of its ``result.json``, from the folder that it wrote."""
     text = (out / EXPLAINED).read_text(encoding="utf-8").rstrip("\n")
-    return text, json.loads((out / "result.json").read_text(encoding="utf-8"))
+    return text, json.loads((out / BUILT).read_text(encoding="utf-8"))

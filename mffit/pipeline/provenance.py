@@ -20,6 +20,7 @@ from mffit.fit.influences.nuisances import of_run
 from mffit.made import Made
 from mffit.measured import Measured
 from mffit.numbers import Numbers
+from mffit.output import BUILT
 from mffit.pipeline.inputs import input_hashes
 from mffit.quantities import DIRECT, KEYS
 from mffit.results import TEMPERATURE
@@ -160,7 +161,7 @@ def missed_by_file(tyre: Tyre, path: Path) -> dict[str, float]:
 def _result_of(tyre: Tyre, path: Path) -> dict[str, Any]:
     """The result of the build that wrote a file; empty if no build did or the file was edited."""
     try:
-        result: dict[str, Any] = json.loads((path.parent / "result.json").read_text(encoding="utf-8"))
+        result: dict[str, Any] = json.loads((path.parent / BUILT).read_text(encoding="utf-8"))
         values = {name: float(row["value"]) for name, row in result["fit"]["coefficients"].items()}
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return {}

@@ -16,7 +16,7 @@ from mffit.config.loading import TYRE_TOML, checked
 from mffit.config.toml_file import tables_of
 from mffit.errors import InputError
 from mffit.fit.influences.nuisance_choice import refuse_lacking
-from mffit.output import ChangedMeanwhile, digest, save_over
+from mffit.output import BUILT, ChangedMeanwhile, digest, save_over
 from mffit.pipeline.inputs import check_named_files, input_names, read_points
 from mffit.recordings.disc import files_of_folder
 from mffit.sweeps import formats
@@ -359,7 +359,7 @@ class Session:
                 "files": sorted(path.name for path in out.glob("*.tir")) if kind == "build" else [],
             }
             for kind, (title, place) in PAGES.items()
-            if kind != "compare" or (has_base and (out / "result.json").is_file())
+            if kind != "compare" or (has_base and (out / BUILT).is_file())
         ]
 
 
