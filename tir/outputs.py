@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from tir.codegen.program import INPUTS, NUMBERS, Switches, refuse_zero_divisors
+from tir.codegen.program import INPUTS, Switches, refuse_zero_divisors
 from tir.codegen.replay import replay
 from tir.derivatives import Traced, plain
 from tir.equations.forces import Forces, State
@@ -30,9 +30,9 @@ def outputs_of(
     given = {"Vx": p.LONGVL, "pressure": p.INFLPRES, **inputs}
     still = tuple(name for name in INPUTS if name not in given)
     every = {**vars(p), **given}
-    leaves = {name: x for name in (*NUMBERS, *given) if isinstance(x := every[name], Traced)}
+    leaves = {name: x for name, x in every.items() if type(x) is Traced}
     run = replay(switches, names, tuple(leaves), still)
-    found = run({name: _real(plain(every[name])) for name in run.symbols})
+    found = run({name: x if type(x := every[name]) is float else _real(plain(x)) for name in run.symbols})
     if not leaves:
         return found
     tape, k = next(iter(leaves.values())).tape, len(leaves)

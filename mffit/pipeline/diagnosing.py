@@ -29,12 +29,14 @@ from mffit.pipeline.provenance import fitted_to, known_of_model, marked, rig_of_
 from mffit.points import Points
 from mffit.points.loading import Reading
 from mffit.progress import READING, Progress, silent
+from mffit.sweeps import formats
 from tir import Tyre
 
 WRITTEN = ("diagnosis.json", "diagnosis.html")
 """Files that every diagnosis writes in addition to its property file."""
 
 
+@formats.reading_once()
 def diagnose(
     config: Config | Mapping[str, Any] | str | Path,
     model: Tyre | str | Path | None = None,
