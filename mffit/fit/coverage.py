@@ -54,6 +54,9 @@ class Design:
 
     run: Mapping[str, int]
     """By need of the parameter table, the number of levels that were run; 0 or 1 for needs without levels."""
+    driven: Mapping[
+        str, int
+    ]  #: the same at points with longitudinal slip, for needs that can be met without it
     both_flanks: bool  #: sideslip towards both flanks of the tyre: to both sides, or with the tyre turned on its rim or backwards
     measured: tuple[str, ...]  #: channels with readings
     shifts: bool  #: odd shift terms are separable: flat track, or disc with backward runs, flipped mounts or both sides
@@ -73,22 +76,30 @@ def design(points: Points, side: str) -> Design:
     cambered = np.abs(points.gamma) > UPRIGHT.rad
     slipping = np.abs(points.alpha) > STRAIGHT.rad
     driven, towards = ~points.free_rolling, np.sign(points.alpha)
+
+    def anywhere(rows: np.ndarray) -> dict[str, int]:
+        """The needs that points (n,) of a mask meet, whatever else differs between them."""
+        return {
+            "loads": len(np.unique(held[rows & (held >= 0)])),
+            "pressures": levels.count(points.p[rows], levels.PRESSURE),
+            "camber": levels.count(np.abs(points.gamma[rows]), levels.CAMBER) - 1,
+            "both_sides": int(_differ(towards[rows & slipping])),
+        }
+
     run: dict[str, float | np.bool_] = {
-        "loads": len(np.unique(held[held >= 0])),
-        "pressures": levels.count(points.p, levels.PRESSURE),
+        **anywhere(np.ones(len(points), dtype=bool)),
         "pressure_loads": sum(n > 1 for n in pressures_at),
-        "camber": levels.count(np.abs(points.gamma), levels.CAMBER) - 1,
         "coupled": np.any(cambered & slipping),
         "speeds": levels.count(points.V, levels.SPEED),
         "sideslips": levels.count(points.alpha, levels.SIDESLIP),
         "kappa": np.any(driven),
         "combined": levels.count(np.abs(points.alpha[driven]), levels.SIDESLIP) - 1 if np.any(driven) else 0,
         "side_force": np.any(driven & (slipping | cambered)),
-        "both_sides": _differ(towards[slipping]),
         "curvature": curved,
     }
     return Design(
         run={word: int(count) for word, count in run.items()},
+        driven=anywhere(driven) if np.any(driven) else {},
         both_flanks=_differ((towards * points.direction * points.mount)[slipping]),
         measured=points.measured,
         shifts=both_ways or not curved,
@@ -174,11 +185,12 @@ def _missing(row: Parameter, seen: Design) -> str:
         )
     if row.odd and seen.symmetric:
         return "the tyre is declared symmetric"
+    driven = seen.driven if {"kappa", "combined", "side_force"} & {need.word for need in row.needs} else {}
     for need in row.needs:
-        met = seen.run[need.word] >= need.levels or (need.word == "both_sides" and _side_known(row, seen))
-        if not met:
-            run = seen.run[need.word]
-            return LACKING[need.word].format(
+        run = min(seen.run[need.word], driven.get(need.word, seen.run[need.word]))
+        if run < need.levels and not (need.word == "both_sides" and _side_known(row, seen)):
+            among = "with longitudinal slip, " if run < seen.run[need.word] else ""
+            return among + LACKING[need.word].format(
                 needed=need.levels, run=run, where="one load" if run else "different loads"
             )
     return ""

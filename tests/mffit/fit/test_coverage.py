@@ -167,3 +167,29 @@ def test_the_sets_of_the_stages_are_the_tables():
     assert SMALL_ON_A_DISC == {"PHY1": 0.002, "PVY1": 0.003, "PVY2": 0.003}
     rolling = {row.name for row in TABLE if row.odd and row.stage in ("shift", "trail", "residual")}
     assert rolling == {row.name for row in TABLE if row.symmetric_spread is not None} | SMALL_ON_A_DISC.keys()
+
+
+def braked(*combined) -> Points:
+    """Sideslip at three loads, two pressures and two cambers, and braking at every combination of sideslip and camber [deg]."""
+    rows = [(a, np.radians(g), 0.0, Fz, 1e3 * p) for Fz, p, g in FULL for a in ALPHA]
+    slips, loads = np.linspace(-0.12, 0.03, 11), (900.0, 1400.0, 2100.0)
+    rows += [(*np.radians((a, g)), k, Fz, 250e3) for a, g in combined for Fz in loads for k in slips]
+    alpha, gamma, kappa, Fz, p = np.array(rows).T
+    points = make_points(alpha, gamma, Fz, kappa=kappa, p=p, V=6.0, phi_t=0.0)
+    return points.replace(Fx=20.0 * Fz * kappa, Fy=-10.0 * Fz * alpha, Mz=0.1 * Fz * alpha)
+
+
+@pytest.mark.parametrize(
+    ("combined", "free"),
+    [
+        ([(0, 0), (3, 0), (6, 0)], set()),
+        ([(0, 0), (3, 0), (-3, 0)], {"RHX1", "RBY3"}),
+        ([(0, 0), (3, 0), (3, 4)], {"RBX3", "RBY4", "PDX3", "RVY3"}),
+    ],
+)
+def test_a_coefficient_of_combined_slip_needs_its_conditions_together(combined, free):
+    """Camber without slip, and slip without camber, do not show how camber changes the force under slip."""
+    needing = {"RHX1", "RBY3", "RBX3", "RBY4", "PDX3", "RVY3", "PPX1", "PPX3"}
+    found = held(braked(*combined))
+    assert needing - found.keys() == free
+    assert "with longitudinal slip, 2 pressures are needed, 1 run" in found["PPX1"]
