@@ -12,6 +12,7 @@ import numpy as np
 from mffit.least_squares import inverse, root
 from mffit.linearised import constants
 from mffit.linearised.channel import LinearisedChannel, LookedAt, Uncertain
+from mffit.linearised.combined import Combinations
 from mffit.linearised.components import LIKELY_EVIDENCE, Components, Terms, own_columns
 from mffit.linearised.ends import growths
 from mffit.linearised.gaussian import Informed
@@ -44,6 +45,14 @@ class LinearisedFit:
     def growths(self) -> dict[str, np.ndarray]:
         """By channel, how fast errors grow beyond the tested ranges, as :func:`mffit.linearised.ends.growths`."""
         return {name: growths(channel, self.numbers) for name, channel in self.channels.items()}
+
+    @cached_property
+    def combinations(self) -> dict[str, Combinations]:
+        """By channel, how far combinations of conditions lie from the tested ones."""
+        return {
+            name: Combinations.of(channel.seen.inputs, channel.seen.settings, self.growths[name], name)
+            for name, channel in self.channels.items()
+        }
 
     @property
     def zeros(self) -> dict[str, tuple[float, float]]:

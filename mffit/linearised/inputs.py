@@ -52,6 +52,16 @@ class Input:
         end = max(-self.lower, self.upper)
         return (-end, end) if self.name in REVERSED else (self.lower, self.upper)
 
+    @property
+    def steps(self) -> int:
+        """Number of spacings in the tested range."""
+        return round(self.width / self.spacing)
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """Settings (steps + 1,) over the tested range, a spacing apart."""
+        return np.linspace(self.lower, self.upper, self.steps + 1)
+
     def stretched(self, values: np.ndarray) -> np.ndarray:
         """Values of a swept slip on a scale with the same ends that is stretched around zero; others as they are."""
         if not self.is_stretched:
@@ -61,14 +71,15 @@ class Input:
         out: np.ndarray = self.lower + (np.arcsinh(values / unit) - low) / (high - low) * self.width
         return out
 
-    def strayed(self, values: np.ndarray) -> np.ndarray:
+    def strayed(self, values: np.ndarray, known: np.ndarray | None = None) -> np.ndarray:
         """Variance (n,) beyond the range, up to a factor, of a curve whose slope wanders at random; 0 inside and where it is NaN.
 
-        The values at an end and in the middle of the range show the slope there.
+        The values at an end and in the middle of the range show the slope there. ``known`` (n,) are other last known values of
+        the condition than those of the range.
         """
-        end, middle = np.clip(values, *self.shown), 0.5 * sum(self.shown)
+        end = np.clip(values, *self.shown) if known is None else known
         beyond = self._apart(values, end)
-        return np.asarray(beyond**2 * (beyond + self._apart(end, middle)))
+        return np.asarray(beyond**2 * (beyond + self._apart(end, 0.5 * sum(self.shown))))
 
     def _apart(self, values: np.ndarray, others: np.ndarray | float) -> np.ndarray:
         """Distances (n,), 0 where they are NaN; of loads, the logarithm of their ratio."""

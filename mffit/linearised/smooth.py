@@ -90,8 +90,7 @@ class SmoothFunctions(ReadOnlyArrays):
         """
         differs = int(np.argmax(np.ptp(pair, axis=0) / lengths))
         one = self.inputs[differs]
-        settings = np.linspace(one.lower, one.upper, round(one.width / one.spacing) + 1)
-        at = one.stretched(np.append(pair[:, differs], settings))
+        at = one.stretched(np.append(pair[:, differs], one.nodes))
         far = np.sqrt(5.0) * np.abs(at[:, None] - at) / lengths[differs]
         alike = (1.0 + far + far**2 / 3.0) * np.exp(-far) + SINGULAR * np.eye(len(at))
         change = alike[1] - alike[0]

@@ -14,6 +14,7 @@ import pandas as pd
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.least_squares import root
 from mffit.linearised import LinearisedChannel, LinearisedFit
+from mffit.linearised.combined import Combinations
 from mffit.linearised.components import Components
 from mffit.linearised.inputs import SLIPS, Input
 from mffit.linearised.smooth import SmoothFunctions
@@ -55,6 +56,7 @@ class MissedChannel(ReadOnlyArrays):
     noise: float  #: standard deviation of the noise of a typical reading [unit of the channel]
     size: float  #: rms model error at the readings [unit of the channel]
     growth: np.ndarray  #: (d,) as :func:`mffit.linearised.ends.growths`
+    combinations: Combinations  #: of the conditions, tested and untested ones
     is_proven: bool  #: whether the model error is more than noise and scatter of runs
 
     @property
@@ -83,6 +85,8 @@ class MissedChannel(ReadOnlyArrays):
         # Between the lowest tested load and none, where it is zero again, the model error is free as a bridge is.
         share = (2.0 * left.slip + untold) * left.load**2 + left.load * (1.0 - left.load)
         unlike = share * self.components.missed**2 + self._strays(settings) * force**2
+        never = self.combinations.at(settings) * force**2  # it holds what the model knows of its error there
+        unlike = unlike + np.maximum(never - mean - unlike, 0.0)
         return functions @ self.missed, mean + unlike, reading + unlike
 
     def mean(self, settings: np.ndarray) -> np.ndarray:
@@ -327,6 +331,23 @@ class Predictor(ReadOnlyArrays):
         whole, plain = (one.readings(points, names) for one in (file.with_numbers(self.beside), file))
         return Readings(**{name: whole[name] - plain[name] for name in names})
 
+    def never_combined(self, points: Points, found: pd.DataFrame) -> list[tuple[str, ...]]:
+        """For each of the points, the fields that were never tested together; ``found`` is their prediction.
+
+        Empty where this is not the largest part of the uncertainty of any channel.
+        """
+        out: list[tuple[str, ...]] = [()] * len(points)
+        for name, own in self.channels.items():
+            settings, best = _stated(points, own.smooth.inputs), column(name, "best")
+            never = own.combinations.at(settings) * found[best].to_numpy() ** 2
+            matters = 2.0 * never > found[f"u_{best}"].to_numpy() ** 2
+            apart = own.combinations.untested(settings)
+            out = [
+                known or (names if here else ())
+                for known, names, here in zip(out, apart, matters, strict=True)
+            ]
+        return out
+
     def missed(self, name: str, points: Points) -> np.ndarray:
         """The estimated model error (n,) of a channel, averaged over conditions that are not stated."""
         channel = self.channels[name]
@@ -440,6 +461,7 @@ def predictor(
             own.noise,
             own.size,
             left.growths[name],
+            left.combinations[name],
             own.is_proven,
         )
         for name, own in left.channels.items()

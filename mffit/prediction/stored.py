@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import warnings
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
@@ -15,19 +16,21 @@ import pandas as pd
 
 import tir
 from mffit.errors import InputError
+from mffit.linearised.combined import Combinations, planned
 from mffit.linearised.components import Components
 from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.output import folder_of_build
+from mffit.points import Points
 from mffit.points.levels import SPEED
 from mffit.points.points import of_si
 from mffit.prediction.conditions import PATH, checked, read_conditions
 from mffit.prediction.predictor import MissedChannel, Predictor
-from mffit.quantities import CHANNELS
+from mffit.quantities import CHANNELS, COLUMNS
 from mffit.rig_errors import BY_NAME as ERROR_OF
 from tir import TirWarning, Tyre
 from tir.envelope import RANGES
-from tir.errors import counted
+from tir.errors import counted, listed
 from tir.parameters import BY_NAME
 
 FILE = "prediction.json"
@@ -59,6 +62,8 @@ def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
                 "noise": own.noise,
                 "size": own.size,
                 "growth": own.growth.tolist(),
+                "tested": _text(own.combinations.tested),
+                "strays": _text(own.combinations.strays),
                 "proven": own.is_proven,
             }
             for name, own in found.channels.items()
@@ -119,13 +124,31 @@ def predict(folder: str | Path, conditions: str | Path | pd.DataFrame) -> pd.Dat
     Warns
     -----
     TirWarning
-        A condition is outside the ranges of the property file, or a speed outside the tested ones.
+        A condition is outside the ranges of the property file, a speed is outside the tested ones, or conditions were never
+        tested together.
     """
     known, tyre, fitted = load(Path(folder))
     table = checked(conditions) if isinstance(conditions, pd.DataFrame) else read_conditions(Path(conditions))
-    for sentence in _beyond_ranges(known, tyre, table):
+    found = known.predict(tyre, fitted, table)
+    for sentence in (
+        *_beyond_ranges(known, tyre, table),
+        *_never_combined(known, known.points(tyre, table), found),
+    ):
         warnings.warn(sentence, TirWarning, stacklevel=2)
-    return known.predict(tyre, fitted, table)
+    return found
+
+
+def _never_combined(known: Predictor, points: Points, found: pd.DataFrame) -> Iterator[str]:
+    """A sentence if it is the largest part of an uncertainty that conditions were never tested together."""
+    apart = known.never_combined(points, found)
+    rows = [row for row, names in enumerate(apart) if names]
+    if rows:
+        (names, _), *_ = Counter(apart[row] for row in rows).most_common(1)
+        yield (
+            f"{listed([COLUMNS[name] for name in names])} were tested, but never together as in {len(rows)} of "
+            f"{counted(len(points), 'condition')}, first in row {rows[0] + 1}: the uncertainty there is that of an untested "
+            "combination; run it if it matters"
+        )
 
 
 def _beyond_ranges(known: Predictor, tyre: Tyre, table: pd.DataFrame) -> Iterator[str]:
@@ -183,6 +206,8 @@ def _predictor(content: dict[str, Any]) -> Predictor:
 
 def _channel(own: dict[str, Any], coefficients: int) -> MissedChannel:
     inputs = tuple(Input(**{**one, "averaged": tuple(one["averaged"])}) for one in own["inputs"])
+    shape = [inputs[i].steps + 1 for i in planned(inputs)]
+    tested, strays = (_array(own[key], 1).reshape(shape) for key in ("tested", "strays"))
     missed = np.array(own["missed"], dtype=float)
     return MissedChannel(
         smooth=SmoothFunctions(inputs, np.array(own["orders"], dtype=int).reshape(len(missed), len(inputs))),
@@ -192,6 +217,7 @@ def _channel(own: dict[str, Any], coefficients: int) -> MissedChannel:
         noise=float(own["noise"]),
         size=float(own["size"]),
         growth=np.array(own["growth"], dtype=float).reshape(len(inputs)),
+        combinations=Combinations(inputs, tested > 0.0, strays),
         is_proven=bool(own["proven"]),
     )
 

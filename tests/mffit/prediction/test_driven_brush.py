@@ -121,3 +121,22 @@ def test_lines_of_the_model_error_are_at_conditions_that_its_sweeps_held(driven)
     lines = {panel.title: [one.name for one in panel.series] for panel in panels}
     assert lines["Fx, by sideslip"] == ["-5 deg", "0 deg", "5 deg"]
     assert lines["Fy, by longitudinal slip"] == ["0"]
+
+
+def test_slip_at_sideslips_where_it_was_never_run(driven):
+    """Sideslip was run to 8 deg alone, and to 5 deg with slip: each was tested, both together were not."""
+    random = np.random.default_rng(3)
+    alpha = random.choice([-1.0, 1.0], 300) * random.uniform(5.5, 8.0, 300)
+    kappa = random.choice([-1.0, 1.0], 300) * random.uniform(0.02, 0.15, 300)
+    Fz = random.uniform(1000.0, 2600.0, 300)
+    with pytest.warns(TirWarning, match="alpha_deg and kappa were tested, but never together as in"):
+        found = driven.predict(alpha_deg=alpha, gamma_deg=0.0, Fz_N=Fz, kappa=kappa)
+    for name, unit in {"Fx": "N", "Fy": "N", "Mz": "Nm"}.items():
+        off = np.abs(found[f"{name}_best_{unit}"] - forces(alpha, Fz, kappa)[f"{name}_{unit}"])
+        assert np.mean(off < 1.96 * found[f"u_{name}_best_{unit}"]) > 0.9
+
+
+def test_between_combinations_that_were_run_nothing_is_said(driven, recwarn):
+    alpha, kappa = (x.ravel() for x in np.meshgrid(np.linspace(-5.0, 5.0, 11), np.linspace(-0.15, 0.15, 11)))
+    driven.predict(alpha_deg=alpha, gamma_deg=0.0, Fz_N=1400.0, kappa=kappa)
+    assert not recwarn.list
