@@ -27,7 +27,7 @@ def programme(*sweeps, moment=True, phi_t=-0.7, backward=True) -> Points:
 
 
 LOADS = [(Fz, 250.0, g) for Fz in (900.0, 1400.0, 2100.0) for g in (0.0, 20.0)]
-PRESSURES = [(1400.0, 200.0, 0.0), (1400.0, 300.0, 0.0)]
+PRESSURES = [(1400.0, 200.0, 0.0), (1400.0, 300.0, 0.0), (1400.0, 200.0, 20.0)]
 FULL = [*LOADS, *PRESSURES, (2100.0, 200.0, 0.0)]
 
 
@@ -192,4 +192,40 @@ def test_a_coefficient_of_combined_slip_needs_its_conditions_together(combined, 
     needing = {"RHX1", "RBY3", "RBX3", "RBY4", "PDX3", "RVY3", "PPX1", "PPX3"}
     found = held(braked(*combined))
     assert needing - found.keys() == free
-    assert "with longitudinal slip, 2 pressures are needed, 1 run" in found["PPX1"]
+
+
+OF_PRESSURE = {"PPX1", "PPX3"}
+OF_CAMBER = {"PDX3", "RBX3", "RBY4", "RVY3", "SSZ3", "SSZ4"}
+
+
+def slip_beside_sideslip(*slipping) -> Points:
+    """Sideslip at three loads, with camber and at two pressures, and slip at (sideslip [deg], camber [deg], pressure [kPa])."""
+    rolling = [(a, g, 0.0, Fz, p) for Fz, p, g in FULL for a in ALPHA]
+    slip = np.linspace(-0.2, 0.2, 9)
+    driven = [
+        (np.radians(a), g, k, Fz, p) for a, g, p in slipping for Fz in (900.0, 1400.0, 2100.0) for k in slip
+    ]
+    alpha, gamma, kappa, Fz, p = np.array([*rolling, *driven]).T
+    points = make_points(alpha, np.radians(gamma), Fz, kappa=kappa, p=1e3 * p, V=6.0, phi_t=0.0)
+    Fy = -10.0 * Fz * alpha
+    return points.replace(Fx=20.0 * Fz * kappa - 0.01 * Fz, Fy=Fy, Mz=-0.03 * Fy)
+
+
+def test_a_wheel_that_rolls_freely_shows_nothing_of_longitudinal_slip():
+    """Rolling resistance and its moment change with camber and pressure, too; slip at both alone tells its own effects."""
+    apart = slip_beside_sideslip((0.0, 0.0, 250.0), (4.0, 0.0, 250.0), (-4.0, 0.0, 250.0))
+    found = held(apart)
+    assert set(found) >= OF_PRESSURE | OF_CAMBER
+    assert found.keys().isdisjoint({"PDX2", "PKX3", "RBX1", "REX2", "SSZ2", "PPY1", "PKY6", "PPY5"})
+    assert "2 pressures are needed with longitudinal slip, 1 run" in found["PPX1"]
+    assert "no camber was run with longitudinal slip under sideslip" in found["RBX3"]
+    leaning = slip_beside_sideslip((0.0, 0.0, 250.0), (0.0, 4.0, 250.0), (4.0, 0.0, 250.0))
+    assert (OF_CAMBER | OF_PRESSURE) & held(leaning).keys() == {"RBX3", "RBY4", *OF_PRESSURE}
+    everything = slip_beside_sideslip((0.0, 0.0, 250.0), (4.0, 4.0, 250.0), (4.0, 0.0, 200.0))
+    assert not (OF_CAMBER | OF_PRESSURE) & held(everything).keys()
+
+
+def test_a_camber_that_was_run_at_one_load_shows_nothing_of_its_change_with_load():
+    found = held(programme(*[s for s in FULL if s[2] == 0.0], (1400.0, 250.0, 20.0), (1400.0, 200.0, 20.0)))
+    assert found.keys() == {"PKY7", "PVY4", "QDZ9", "QDZ11", "QHZ4"}
+    assert "2 loads are needed with camber, 1 run" in found["PKY7"]
