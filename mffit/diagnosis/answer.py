@@ -19,6 +19,7 @@ from mffit.diagnosis.inexact import EXACT
 from mffit.diagnosis.limits import Limit, limits
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import DiagnosisNote, MoreThanBuild
+from mffit.diagnosis.odd_level import OddLevel
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.diagnosis.repair import Confirmed, Repair
 from mffit.diagnosis.rest import Answer, Rest
@@ -62,7 +63,7 @@ def answered(
         return Answer.UNKNOWN
     if not named:
         likely = max(alternatives.values(), default=0.0) > MOST
-        likely |= any(isinstance(one, MoreThanBuild) for one in notes)
+        likely |= any(isinstance(one, MoreThanBuild | OddLevel) for one in notes)
         return Answer.UNDECIDED if likely else Answer.NOTHING
     open_ = any(one.tied for one in named) or not any(one.repaired for one in named)
     return Answer.UNDECIDED if open_ else Answer.FOUND
@@ -79,6 +80,7 @@ def answer(
         given.predict(one.refined.state) if one.chosen.effects or one.coefficients else before
         for one in (found, done)
     )
+    odd = [one.place for one in notes if isinstance(one, OddLevel) and one.region]
     delivers = any(effect.kind == "tyre" and effect.in_file for effect in done.chosen.effects)
     again = bool(done.chosen.effects) and any(name in BY_NAME for name in done.coefficients)
     corrected = _corrected(search.tyre, done, u)
@@ -100,7 +102,7 @@ def answer(
         effects=tuple(_with_repair(one, done, u) for one in named),
         alternatives=confirmed.alternatives,
         contests=found.contests or ((found.further,) if found.further else ()),
-        unexplained_where=_remaining(found, given.measured - explained) if confirmed.rest else (),
+        unexplained_where=_remaining(found, given.measured - explained, odd) if confirmed.rest or odd else (),
         bump=found.bump if found.bump.found else None,
         smooth=found.smooth if found.smooth.found else None,
         outliers=_outliers(given.points, explained, scatter),
@@ -134,10 +136,11 @@ def _with_repair(named: AcceptedEffect, done: Explanation, u: Mapping[str, float
     return replace(named, parameters={n: (numbers[n], u[n]) for n in named.parameters})
 
 
-def _remaining(found: Explanation, residual: np.ndarray) -> tuple[Region, ...]:
-    """Regions that remain unexplained, the bump first."""
+def _remaining(found: Explanation, residual: np.ndarray, odd: Sequence[Region]) -> tuple[Region, ...]:
+    """Regions that remain unexplained: the ``odd`` level of a setting first, then the bump."""
     regions = where(found.problem.points, residual, found.scatter)[:NAMED_IN_SENTENCE]
-    return (_bump_region(found.bump), *regions) if found.bump.found else regions
+    bump = [_bump_region(found.bump)] if found.bump.found else []
+    return (*odd, *bump, *regions)
 
 
 def _bump_region(bump: Bump) -> Region:

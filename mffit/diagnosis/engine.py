@@ -11,7 +11,7 @@ import numpy as np
 from mffit.config import Config, axis_signs, declared_faults
 from mffit.diagnosis.answer import answer, named_effects, not_accepted
 from mffit.diagnosis.conditions import by_condition
-from mffit.diagnosis.estimated import beyond_build
+from mffit.diagnosis.estimated import beyond_build, odd_runs
 from mffit.diagnosis.explain import explain
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import declared as declared_inexactness
@@ -95,6 +95,7 @@ def _notes(
     remarks = (
         *(TakenOff(sentence) for sentence in search.asked.taken_off),
         wrong,
+        odd_runs(done.explanation, search),
         None if confirmed.rest else _of_build(found, search),
         without_noise(found.scatter),
         *offsets_or_memory(found.scatter, search.candidates, found.chosen.ids),

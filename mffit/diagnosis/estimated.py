@@ -18,6 +18,7 @@ from mffit.constants import TWO_SIGMA
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.inexact import EXACT, columns_of, known_around, slopes_of
+from mffit.diagnosis.odd_level import OddLevel, odd_level
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.search import Search
 from mffit.fit.stages import is_asymmetry
@@ -26,6 +27,7 @@ from mffit.linearised.components import CERTAIN_EVIDENCE
 from mffit.linearised.gaussian import Informed
 from mffit.numbers import Numbers
 from mffit.points.like import curves
+from mffit.rig import Simulation
 from mffit.rig_errors import error_of
 from mffit.scatter import rms
 
@@ -92,24 +94,36 @@ class _Evidence(NamedTuple):
         return Informed.of_rows(np.hstack([own, self.missed]), self.residual).gain
 
 
-def beyond_build(found: Explanation, search: Search) -> dict[str, tuple[float, float]]:
-    """By channel, what a built file misses beyond the noise and what its build left, if it is more than twice that.
+def with_given_coefficients(found: Explanation, search: Search) -> Simulation:
+    """The simulation with the effects and the errors of the rig estimated within their declaration.
 
-    The errors of the rig are estimated within their declaration; the coefficients stay as built, and calibrations, which look
-    like the tyre, as declared.
+    The coefficients stay as given, and calibrations, which look like the tyre, as declared.
     """
     plain = DiagnosisProblem(found.problem.points, search.start, found.plain.noise, found.problem.declared)
     held = {n for n in search.beside.names if (e := error_of(n)) is None or e.is_gain}
-    of_rig, out = search.beside.without(held), {}
-    state = plain.refine(found.chosen, of_rig)[0].state
-    away = np.where(np.isfinite(plain.noise.u), plain.measured - plain.predict(state), np.nan)
-    missed, u = plain.noise.by_channel(away), found.scatter.by_channel(found.scatter.u)
+    return plain.refine(found.chosen, search.beside.without(held))[0].state
+
+
+def beyond_build(found: Explanation, search: Search) -> dict[str, tuple[float, float]]:
+    """By channel, what a built file misses beyond the noise and what its build left, if it is more than twice that."""
+    plain, out = found.plain, {}
+    away = plain.measured - plain.predict(with_given_coefficients(found, search))
+    missed = plain.noise.by_channel(np.where(np.isfinite(plain.noise.u), away, np.nan))
+    u = found.scatter.by_channel(found.scatter.u)
     for name, left in search.asked.left.items():
         if name in missed:
             beyond = rms(missed[name]) ** 2 - rms(np.where(np.isfinite(u[name]), u[name], np.nan)) ** 2
             if beyond > (TWO_SIGMA * left) ** 2:
                 out[name] = math.sqrt(beyond), left
     return out
+
+
+def odd_runs(found: Explanation, search: Search) -> OddLevel | None:
+    """The runs that read a share more or less than the file of a build says, or the corrected model."""
+    left, plain = search.asked.left, found.plain
+    state = with_given_coefficients(found, search) if left else found.refined.state
+    simulated = plain.predict(state)
+    return odd_level(plain.points, plain.measured - simulated, simulated, found.scatter, left)
 
 
 def _strained(plain: DiagnosisProblem, chosen: Hypothesis, search: Search) -> bool:

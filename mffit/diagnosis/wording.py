@@ -12,6 +12,7 @@ from mffit.diagnosis import constants, priors
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.noise import MemorySpan, Noise, Origin
 from mffit.diagnosis.notes import AnotherTyre, MoreThanBuild, NoRepair, TakenOff, short
+from mffit.diagnosis.odd_level import OddLevel
 from mffit.diagnosis.remains import BestEffect
 from mffit.diagnosis.rest import Answer, Rest, RestKind
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis
@@ -54,7 +55,7 @@ def headline(diagnosis: Diagnosis) -> str:
 def verdict(diagnosis: Diagnosis) -> str:
     """The answer without numbers and without full stop."""
     effects = _explained_by(diagnosis)
-    names = listed([_with_ties(found) for found in effects])
+    names, odd = listed([_with_ties(found) for found in effects]), _odd(diagnosis)
     match diagnosis.answer:
         case Answer.NOTHING:
             return "Nothing is missing as far as these data can show"
@@ -64,6 +65,8 @@ def verdict(diagnosis: Diagnosis) -> str:
             return f"The missing {'effect is' if len(effects) == 1 else 'effects are'} {names}"
         case Answer.UNDECIDED if effects:
             return f"These data cannot tell what is missing; the best explanation is {names}"
+        case Answer.UNDECIDED if odd is not None:
+            return f"{odd.said[:1].upper()}{odd.said[1:]}, and no effect stands out"
         case Answer.UNDECIDED if any(isinstance(one, MoreThanBuild) for one in diagnosis.notes):
             return "Something may be missing: the model misses more than its build left, and no effect stands out"
         case Answer.UNDECIDED:
@@ -72,11 +75,19 @@ def verdict(diagnosis: Diagnosis) -> str:
             but = "left-out sweeps do not confirm it" if refused else "these data do not establish it"
             what = f"{NAMES.get(likeliest, likeliest)} is suspected (probability {per_cent(confidence)})"
             return f"Nothing is corrected; {what}, but {but}"
+        case Answer.UNKNOWN if odd is not None:
+            beside = f" in addition to {names}" if effects else ""
+            return f"{odd.said[:1].upper()}{odd.said[1:]}, which no effect of the library describes{beside}"
         case Answer.UNKNOWN:
             if diagnosis.suspected:
                 return f"More is missing than effects of the library describe{f', beside {names}' if effects else ''}"
             also = f" in addition to {names}" if effects else ""
             return f"Something is missing that no effect of the library describes{also}"
+
+
+def _odd(diagnosis: Diagnosis) -> OddLevel | None:
+    """The runs that read a share more or less than simulated, if there are such."""
+    return next((remark for remark in diagnosis.notes if isinstance(remark, OddLevel)), None)
 
 
 def _explained_by(diagnosis: Diagnosis) -> tuple[AcceptedEffect, ...]:
@@ -111,9 +122,11 @@ def reasons(diagnosis: Diagnosis) -> tuple[str, ...]:
 
 def _cure(diagnosis: Diagnosis) -> str:
     """What to do about an unknown cause."""
-    first = diagnosis.rest[0]
+    first, odd = diagnosis.rest[0], _odd(diagnosis)
     if first.sweep:
         return f"check {first.sweep} or repeat it"
+    if odd is not None:
+        return odd.cure
     if first.kind is RestKind.LOCAL and diagnosis.bump is not None:
         return f"repeat the points around {_around(diagnosis.bump)}"
     if first.kind is RestKind.SCATTER:
