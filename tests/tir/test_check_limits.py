@@ -164,5 +164,7 @@ def test_a_file_that_ends_before_a_section_says_which_moment_is_default(tmp_path
 
 def test_a_file_that_is_not_to_be_trusted_says_so_again():
     tyre = TYRE.annotate(provenance={"NOT TO BE TRUSTED": "run 3 contradicts the others"})
-    new = {problem.sentence for problem in tir.check(tyre)} - {problem.sentence for problem in tir.check(TYRE)}
+    new = {problem.sentence for problem in tir.check(tyre)} - {
+        problem.sentence for problem in tir.check(TYRE)
+    }
     assert new == {"the file says of itself that it is not to be trusted: run 3 contradicts the others"}
