@@ -219,10 +219,11 @@ def solve(
     """
     objective = Objective.of(problem, numbers)
     x = np.clip([n.start for n in numbers], objective.lower, objective.upper)
-    here: Linear | None = problem.linear(x)
-    cost = objective.cost(x, here.data, here.limits)
+    at = problem.linear(x)
+    here: Linear | None = at
+    cost = objective.cost(x, at.data, at.limits)
     damping, taken, close = 1e-3, 0, False
-    form, bend = Quadratic.around(objective, x, here), np.zeros((len(x), len(x)))
+    form, bend = Quadratic.around(objective, x, at), np.zeros((len(x), len(x)))
     while taken < max_steps and len(x) and not close:
         close = form.left < tolerance * cost
         forms = [form, form.bent(bend)] if bend.any() and not close else [form]
@@ -232,8 +233,8 @@ def solve(
         taken += 1
         move, x, cost, damping, here = step.x - x, step.x, step.cost, step.damping, step.here
         if not close and taken < max_steps:
-            here, before = problem.linear(x), form
-            form = Quadratic.around(objective, x, here)
+            here = at = problem.linear(x)
+            before, form = form, Quadratic.around(objective, x, at)
             bend = _bend(bend, move, before, form)
     return Solution(objective, x, cost, taken, here)
 
