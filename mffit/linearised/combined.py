@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Self
 
@@ -25,7 +25,7 @@ class Combinations(ReadOnlyArrays):
     """
 
     inputs: tuple[Input, ...]  #: (d,) all conditions
-    tested: np.ndarray  #: whether readings lie at a combination or on both sides of it
+    tested: np.ndarray  #: whether readings show a combination
     strays: np.ndarray  #: variance of the formula's error over the square of the force; 0 where tested
 
     @classmethod
@@ -49,18 +49,13 @@ class Combinations(ReadOnlyArrays):
         return np.asarray(interpolated(nodes, self.strays[..., None], settings[:, which].T)[0])
 
     def untested(self, settings: np.ndarray) -> list[tuple[str, ...]]:
-        """For each of the conditions (n, d), the names of the fewest that were never combined there; empty where tested."""
+        """For each of the conditions (n, d), the names of two that were never combined there; empty where all were."""
         which = planned(self.inputs)
-        most = np.array(self.tested.shape) - 1
-        places = np.clip(_places(self.inputs, settings), 0, most)
-        names = [self.inputs[i].name for i in which]
+        places = np.clip(_places(self.inputs, settings), 0, np.array(self.tested.shape) - 1)
         found: list[tuple[str, ...]] = [()] * len(settings)
-        for size in range(len(which), 1, -1):  # pairs last: they replace what holds more
-            for some in itertools.combinations(range(len(which)), size):
-                others = tuple(k for k in range(len(which)) if k not in some)
-                known = np.any(self.tested, axis=others)[tuple(places[:, some].T)]
-                for row in np.flatnonzero(~known):
-                    found[row] = tuple(names[k] for k in some)
+        for pair, known in _pairs(self.tested):
+            for row in np.flatnonzero(~known.squeeze()[tuple(places[:, pair].T)]):
+                found[row] = tuple(self.inputs[which[k]].name for k in pair)
         return found
 
 
@@ -77,7 +72,10 @@ def _places(inputs: Sequence[Input], settings: np.ndarray) -> np.ndarray:
 
 
 def _tested(inputs: Sequence[Input], settings: np.ndarray) -> np.ndarray:
-    """Whether readings at ``settings`` (n, d), or their mirror images, lie at each combination or on both sides of it."""
+    """Whether readings at ``settings`` (n, d), or their mirror images, show each combination.
+
+    They show two conditions at which, or on both sides of which, they lie; and more conditions if they show all pairs of these.
+    """
     mirror = np.array([-1.0 if one.name in REVERSED else 1.0 for one in inputs])
     shape = [inputs[i].steps + 1 for i in planned(inputs)]
     places = _places(inputs, np.vstack([settings, settings * mirror]))
@@ -88,7 +86,16 @@ def _tested(inputs: Sequence[Input], settings: np.ndarray) -> np.ndarray:
         below = np.logical_or.accumulate(tested, axis)
         above = np.flip(np.logical_or.accumulate(np.flip(tested, axis), axis), axis)
         tested = below & above
-    return tested
+    return np.asarray(
+        np.logical_and.reduce(np.broadcast_arrays(np.ones(shape, dtype=bool), *dict(_pairs(tested)).values()))
+    )
+
+
+def _pairs(tested: np.ndarray) -> Iterator[tuple[tuple[int, int], np.ndarray]]:
+    """For each pair of axes, whether their settings were tested together at any of the others, whose axes are 1 long."""
+    for pair in itertools.combinations(range(tested.ndim), 2):
+        others = tuple(axis for axis in range(tested.ndim) if axis not in pair)
+        yield pair, np.any(tested, axis=others, keepdims=True)
 
 
 def _grown(

@@ -334,10 +334,10 @@ class Predictor(ReadOnlyArrays):
     def never_combined(self, points: Points, found: pd.DataFrame) -> list[tuple[str, ...]]:
         """For each of the points, the fields that were never tested together; ``found`` is their prediction.
 
-        Empty where this is not the largest part of the uncertainty of any channel.
+        Empty where this is not the largest part of the uncertainty of any channel with a proven model error.
         """
         out: list[tuple[str, ...]] = [()] * len(points)
-        for name, own in self.channels.items():
+        for name, own in ((name, own) for name, own in self.channels.items() if own.is_proven):
             settings, best = _stated(points, own.smooth.inputs), column(name, "best")
             never = own.combinations.at(settings) * found[best].to_numpy() ** 2
             matters = 2.0 * never > found[f"u_{best}"].to_numpy() ** 2
