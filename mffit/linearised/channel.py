@@ -158,25 +158,10 @@ class LinearisedChannel(ReadOnlyArrays):
         """Gain of log evidence by a noise beyond the stated one.
 
         Few readings cannot tell noise from model error that bends between them, which the best model at the stated noise has
-        in its place. Nor is it noise what all sweeps have in common in finer steps: a tyre bends fast where it begins to slide.
+        in its place.
         """
-        others = (
-            terms.evidence(terms.most_probable(self.unit, self.components, most_noise=1.0))
-            for terms in (self.alone, self._finer)
-        )
-        return self.stride * (self._evidence - max(others))
-
-    @property
-    def _finer(self) -> Terms:
-        """The terms with functions in finer steps along what the sweeps move."""
-        inputs = tuple(
-            one if one.is_held else replace(one, spacing=one.spacing / constants.FINER)
-            for one in self.smooth.inputs
-        )
-        known = zip(inputs, self.components.lengths, strict=True)
-        lengths = [length if one.is_held else 0.0 for one, length in known]
-        smooth = SmoothFunctions.over(inputs, self.seen.sign, lengths)
-        return replace(self.alone, model=self._with(smooth, self.alone.model), smooth=smooth)
+        stated = self.alone.most_probable(self.unit, self.components, most_noise=1.0)
+        return self.stride * (self._evidence - self.alone.evidence(stated))
 
     def _with(self, smooth: SmoothFunctions, model: Mixed) -> Mixed:
         """A ``model`` of this channel with other functions of the model error."""

@@ -45,7 +45,7 @@ class Combinations(ReadOnlyArrays):
         which = planned(self.inputs)
         if not which:
             return np.zeros(len(settings))
-        nodes = [self.inputs[i].nodes for i in which]
+        nodes = [self.inputs[i].settings() for i in which]
         return np.asarray(interpolated(nodes, self.strays[..., None], settings[:, which].T)[0])
 
     def untested(self, settings: np.ndarray) -> list[tuple[str, ...]]:
@@ -77,7 +77,7 @@ def _tested(inputs: Sequence[Input], settings: np.ndarray) -> np.ndarray:
     They show two conditions at which, or on both sides of which, they lie; and more conditions if they show all pairs of these.
     """
     mirror = np.array([-1.0 if one.name in REVERSED else 1.0 for one in inputs])
-    shape = [inputs[i].steps + 1 for i in planned(inputs)]
+    shape = [len(inputs[i].settings()) for i in planned(inputs)]
     places = _places(inputs, np.vstack([settings, settings * mirror]))
     places = places[np.all((places >= 0) & (places < shape), axis=1)]
     tested = np.zeros(shape, dtype=bool)
@@ -106,7 +106,7 @@ def _grown(
     A way along the ``slip`` that makes the force begins only where several settings of it were tested: no force shows nothing.
     """
     for axis, i in enumerate(planned(inputs)):
-        one, own = inputs[i], inputs[i].nodes
+        one, own = inputs[i], inputs[i].settings()
         ways = np.moveaxis(strays, axis, -1)[..., None, :] + growth[i] ** 2 * one.strayed(own[:, None], own)
         if one.name == slip:
             there = np.moveaxis(tested, axis, -1)

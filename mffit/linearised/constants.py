@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from tir.constant import Count, Real, Series
 
-FUNCTIONS = Count(300, "-", "Most functions of the model error of a channel.")
-LEAST_SHARE = Real(
-    0.01,
+FUNCTIONS = Count(600, "-", "Most functions of the model error of a channel.")
+FUNCTIONS_AT_FIRST = Count(300, "-", "The same while the lengths of the model error are not known.")
+LEFT_OUT = Real(
+    0.3,
     "-",
-    "Variance of a function, over that of a constant at the lengths for which functions are chosen, below which it is left out.",
+    "Standard deviation of what further functions would add, over the noise, below which they are left out.",
 )
 CHOSEN_FOR = Real(0.5, "-", "Lengths, over the likely ones, for which the functions are chosen.")
 POINTS_EXAMINED = Count(
@@ -16,11 +17,6 @@ POINTS_EXAMINED = Count(
 )
 DIVISIONS_OF_A_SWEEP = Count(
     12, "-", "Shortest length of a smooth function along what is swept, as a part of its range."
-)
-FINER = Count(
-    3,
-    "-",
-    "Part of that length in which all sweeps may share what is then no noise: tests have 25 settings, close where a tyre bends.",
 )
 STEPS_OF_A_SWEEP = Real(
     1.5,
@@ -42,9 +38,6 @@ FREE_OVER_KNOWN = Real(
     100.0,
     "-",
     "Standard deviation of a number without a prior over that which all readings leave, if some are left out.",
-)
-ROOM = Real(
-    0.15, "-", "Range beyond the tested one over which the functions run, so that their slope is free there."
 )
 FUNCTIONS_OF_A_RUN = Count(10, "-", "Smooth functions along its swept setting that each run has of its own.")
 LARGEST_RUN_SCALE = Real(

@@ -224,14 +224,15 @@ def _likely(
     more functions to the others.
     """
 
-    def over(lengths: Sequence[float] | None) -> Terms:
-        smooth = SmoothFunctions.over(seen.inputs, seen.sign, lengths)
+    def over(lengths: Sequence[float] | None, negligible: float = 0.0) -> Terms:
+        smooth = SmoothFunctions.over(seen.inputs, seen.sign, lengths, negligible)
         return Terms(seen.with_functions(alone, name, smooth, unit), smooth, declared)
 
     if near is not None and len(near.lengths) != len(seen.inputs):
         near = None  # one of both fits rejects every reading in which a condition varies
     begin = over(None).most_probable(unit) if near is None else near
-    terms = over(begin.lengths)
+    noise = begin.noise * float(np.median(unit))
+    terms = over(begin.lengths, (constants.LEFT_OUT * noise / begin.missed) ** 2)
     return terms, terms.most_probable(unit, begin)
 
 

@@ -52,15 +52,9 @@ class Input:
         end = max(-self.lower, self.upper)
         return (-end, end) if self.name in REVERSED else (self.lower, self.upper)
 
-    @property
-    def steps(self) -> int:
-        """Number of spacings in the tested range."""
-        return round(self.width / self.spacing)
-
-    @property
-    def nodes(self) -> np.ndarray:
-        """Settings (steps + 1,) over the tested range, a spacing apart."""
-        return np.linspace(self.lower, self.upper, self.steps + 1)
+    def settings(self, each: int = 1) -> np.ndarray:
+        """Settings over the tested range, about a spacing apart, or ``each`` part of it."""
+        return np.linspace(self.lower, self.upper, each * round(self.width / self.spacing) + 1)
 
     def stretched(self, values: np.ndarray) -> np.ndarray:
         """Values of a swept slip on a scale with the same ends that is stretched around zero; others as they are."""

@@ -1,7 +1,8 @@
 """Smooth functions of several conditions: a Gaussian process in a reduced-rank basis.
 
-The basis functions are products of cosines over a slightly widened tested range (Solin and Sarkka 2020, Statistics and Computing
-30, 419); size and length scales change only their prior variances. Each condition has a Matern covariance of order 5/2: model
+The basis functions are products of cosines: the discrete cosine transform over the settings of each condition nearly
+diagonalises their covariance (Ahmed, Natarajan and Rao 1974, IEEE Transactions on Computers C-23, 90). Size and length scales
+change only the functions' prior variances. Each condition has a Matern covariance of order 5/2: model
 error bends fast where a tyre begins to slide and slowly elsewhere, which the single length of a squared exponential cannot
 describe. A constant is one of the functions; the priors apportion it between model error and zeros of the rig.
 """
@@ -17,9 +18,8 @@ from mffit.linearised import constants
 from mffit.linearised.inputs import Input
 from tir.frozen import ReadOnlyArrays
 
-LEAST = float(-np.log(constants.LEAST_SHARE))
-WIDEST = float(np.sqrt(5.0 * np.expm1(LEAST / 3.0)))
-"""Wave number, in radians per length scale, beyond which a basis function's variance is negligible."""
+LEAST = 1e-12
+"""Smallest share of a cosine in the variance over one condition; rounding may leave less than none."""
 SINGULAR = 1e-9
 """Added to correlations, so that those of close settings can be inverted."""
 
@@ -33,26 +33,34 @@ class SmoothFunctions(ReadOnlyArrays):
 
     @classmethod
     def over(
-        cls, inputs: tuple[Input, ...], sign: int = 1, lengths: Sequence[float] | None = None
+        cls,
+        inputs: tuple[Input, ...],
+        sign: int = 1,
+        lengths: Sequence[float] | None = None,
+        negligible: float = 0.0,
     ) -> SmoothFunctions:
         """The basis functions with the largest prior variance at the shortest lengths, or near the likely ``lengths`` (d,).
 
-        Of mirrored conditions, only those are used that a mirror multiplies by ``sign``.
+        Of mirrored conditions, only those are used that a mirror multiplies by ``sign``. The smallest ones, which together have
+        at most a ``negligible`` share of the variance, are left out.
         """
-        orders, size = np.zeros((1, 0), dtype=int), np.zeros(1)
+        orders, size, mirror = np.zeros((1, 0), dtype=int), np.ones(1), np.ones(1)
+        most, even = constants.FUNCTIONS if lengths else constants.FUNCTIONS_AT_FIRST, 1.0
         for one, length in zip(inputs, lengths or [0.0] * len(inputs), strict=True):
-            order = np.arange(_most_half_waves(one) + 1)
-            shortest = max(constants.CHOSEN_FOR * length, one.spacing)
-            # further factors only reduce the variance, so small products are dropped at once
-            size = (size[:, None] + _log_spectrum(np.pi * order * shortest / _length(one))[0]).ravel()
+            share, _ = _shares(one, max(constants.CHOSEN_FOR * length, one.spacing))
+            order = np.arange(len(share))
+            # around the middle of its range, a cosine with an odd number of half waves is odd
+            odd = (-1.0) ** (order * one.mirrored)
             orders = np.column_stack([np.repeat(orders, len(order), axis=0), np.tile(order, len(orders))])
-            orders, size = orders[size > -LEAST], size[size > -LEAST]
-        mirrored = np.array([one.mirrored for one in inputs], dtype=bool)
-        if mirrored.any():  # around the middle of its range, a cosine with an odd number of half waves is odd
-            symmetric = (-1) ** np.sum(orders[:, mirrored], axis=1) == sign
-            orders, size = orders[symmetric], size[symmetric]
-        largest = np.argsort(-size, kind="stable")[: constants.FUNCTIONS]
-        return cls(inputs, orders[largest])
+            size, mirror = np.outer(size, share).ravel(), np.outer(mirror, odd).ravel()
+            even *= odd @ share
+            # further factors are the same for all functions of a sign, so the smallest stay the smallest
+            largest = np.argsort(-size, kind="stable")
+            kept = np.concatenate([largest[mirror[largest] == way][:most] for way in (1, -1)])
+            orders, size, mirror = orders[kept], size[kept], mirror[kept]
+        way = sign if any(one.mirrored for one in inputs) else 1
+        orders, told = orders[mirror == way], np.cumsum(size[mirror == way])
+        return cls(inputs, orders[: 1 + np.searchsorted(told, 0.5 * (1.0 + way * even) - negligible)])
 
     def columns(self, at: np.ndarray) -> np.ndarray:
         """Values (n, m) at conditions (n, d), which are clipped to the tested range.
@@ -73,12 +81,9 @@ class SmoothFunctions(ReadOnlyArrays):
         size = np.zeros(len(self.orders))
         slope = np.zeros((len(self.orders), len(self.inputs)))
         for i, one in enumerate(self.inputs):
-            order = np.arange(_most_half_waves(one) + 1)
-            exponent, by_length = _log_spectrum(np.pi * order * lengths[i] / _length(one))
-            total = float(np.log(np.sum(np.exp(exponent))))
-            share = np.exp(exponent - total)
-            size += (exponent - total)[self.orders[:, i]]
-            slope[:, i] = (by_length - share @ by_length)[self.orders[:, i]]
+            share, by_length = _shares(one, lengths[i])
+            size += np.log(share)[self.orders[:, i]]
+            slope[:, i] = (by_length / share)[self.orders[:, i]]
         return size, slope
 
     def unseen(self, pair: np.ndarray, lengths: np.ndarray) -> float:
@@ -90,9 +95,8 @@ class SmoothFunctions(ReadOnlyArrays):
         """
         differs = int(np.argmax(np.ptp(pair, axis=0) / lengths))
         one = self.inputs[differs]
-        at = one.stretched(np.append(pair[:, differs], one.nodes))
-        far = np.sqrt(5.0) * np.abs(at[:, None] - at) / lengths[differs]
-        alike = (1.0 + far + far**2 / 3.0) * np.exp(-far) + SINGULAR * np.eye(len(at))
+        at = one.stretched(np.append(pair[:, differs], one.settings()))
+        alike = _matern(at[:, None] - at, lengths[differs])[0] + SINGULAR * np.eye(len(at))
         change = alike[1] - alike[0]
         whole = known = change[1] - change[0]
         if one.is_stretched:
@@ -120,22 +124,32 @@ class SmoothFunctions(ReadOnlyArrays):
         return np.asarray(np.sum(distance**2, axis=1))
 
 
+def _grid(one: Input) -> np.ndarray:
+    """The settings (k,) of a condition; of a swept one also those between, as a curve may bend between settings."""
+    return one.settings(1 if one.is_held else 2)
+
+
 def _waves(one: Input, values: np.ndarray, order: np.ndarray) -> np.ndarray:
-    """Cosines (n, k) of one condition, of the numbers of half waves ``order`` (k,), normalised to unit mean square."""
-    place = (np.clip(values, one.lower, one.upper) - one.lower + constants.ROOM * one.width) / _length(one)
-    return np.asarray(np.cos(np.pi * place[:, None] * order) * np.where(order > 0, np.sqrt(2.0), 1.0))
+    """Cosines (n, k) of one condition, of the numbers of half waves ``order`` (k,), of unit mean square over its grid."""
+    steps = len(_grid(one)) - 1
+    # they run half a step beyond the ends
+    place = (np.clip(values, one.lower, one.upper) - one.lower) / one.width * steps + 0.5
+    turn = np.pi / (steps + 1) * place[:, None] * order
+    return np.asarray(np.cos(turn) * np.where(order > 0, np.sqrt(2.0), 1.0))
 
 
-def _length(one: Input) -> float:
-    """Length of the widened range over which the cosines of a condition are defined."""
-    return (1.0 + 2.0 * constants.ROOM) * one.width
+def _shares(one: Input, length: float) -> tuple[np.ndarray, np.ndarray]:
+    """Share (k,) of every cosine in the variance over the grid of a condition, and its derivative by the log length."""
+    at = _grid(one)
+    waves = _waves(one, at, np.arange(len(at))) / len(at)
+    share, slope = (
+        np.einsum("ik,ij,jk->k", waves, own, waves, optimize=True)
+        for own in _matern(at[:, None] - at, length)
+    )
+    return np.maximum(share, LEAST), slope
 
 
-def _most_half_waves(one: Input) -> int:
-    """Largest number of half waves with non-negligible variance at the shortest length."""
-    return int(np.ceil(WIDEST / np.pi * _length(one) / one.spacing))
-
-
-def _log_spectrum(wave: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Log spectral density (k,) of a Matern 5/2 covariance at waves [rad/length], and its derivative by the log length."""
-    return -3.0 * np.log1p(wave**2 / 5.0), -6.0 * wave**2 / (5.0 + wave**2)
+def _matern(apart: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
+    """Matern 5/2 correlation of settings that are ``apart``, and its derivative by the log length."""
+    far = np.sqrt(5.0) * np.abs(apart) / length
+    return (1.0 + far + far**2 / 3.0) * np.exp(-far), far**2 * (1.0 + far) / 3.0 * np.exp(-far)

@@ -206,7 +206,7 @@ def _predictor(content: dict[str, Any]) -> Predictor:
 
 def _channel(own: dict[str, Any], coefficients: int) -> MissedChannel:
     inputs = tuple(Input(**{**one, "averaged": tuple(one["averaged"])}) for one in own["inputs"])
-    shape = [inputs[i].steps + 1 for i in planned(inputs)]
+    shape = [len(inputs[i].settings()) for i in planned(inputs)]
     tested, strays = (_array(own[key], 1).reshape(shape) for key in ("tested", "strays"))
     missed = np.array(own["missed"], dtype=float)
     return MissedChannel(

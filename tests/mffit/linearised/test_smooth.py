@@ -7,7 +7,9 @@ import pytest
 
 from mffit.linearised import constants
 from mffit.linearised.inputs import Input
+from mffit.linearised.mixed import Mixed
 from mffit.linearised.smooth import SmoothFunctions
+from mffit.scatter import rms
 
 ALPHA = Input("alpha", -0.2, 0.3, 0.1)
 LOAD = Input("Fz", 1000.0, 3000.0, 1000.0)
@@ -19,28 +21,61 @@ def covariance(smooth: SmoothFunctions, at: np.ndarray, lengths: list[float]) ->
     return (columns * np.exp(smooth.log_variance(np.array(lengths))[0])) @ columns.T
 
 
-def reflected(one: Input, at: np.ndarray, length: float) -> np.ndarray:
-    """Matern 5/2 covariance (n, n) whose far images are reflected at the ends of the range with its room, as heat in a rod."""
-    room = constants.ROOM * one.width
-    rod, x = one.width + 2.0 * room, at - one.lower + room
-    images = 2.0 * rod * np.arange(-20, 21)
-
-    def bell(distance: np.ndarray) -> np.ndarray:
-        away = np.sqrt(5.0) * np.abs(distance[..., None] + images) / length
-        return ((1.0 + away + away**2 / 3.0) * np.exp(-away)).sum(axis=-1)
-
-    kernel = bell(x[:, None] - x) + bell(x[:, None] + x)
-    fine = np.linspace(0.0, rod, 4001)
-    total = np.mean(bell(np.zeros(1)) + bell(2.0 * fine))
-    return kernel / total
+def matern(one: Input, at: np.ndarray, others: np.ndarray, length: float) -> np.ndarray:
+    """Correlation (n, k) of the model error between settings (n,) and (k,) of one condition."""
+    far = np.sqrt(5.0) * np.abs(at[:, None] - others) / length
+    return (1.0 + far + far**2 / 3.0) * np.exp(-far)
 
 
-@pytest.mark.parametrize("length", [0.12, 0.2, 0.5])
-def test_functions_of_one_condition_have_a_matern_covariance(length):
-    at = np.linspace(ALPHA.lower, ALPHA.upper, 9)
-    smooth = SmoothFunctions.over((ALPHA,))
-    found = covariance(smooth, at[:, None], [length])
-    assert found == pytest.approx(reflected(ALPHA, at, length), abs=0.01)
+@pytest.mark.parametrize("length", [0.5, 1.0, 3.0])
+@pytest.mark.parametrize("settings", [2, 3, 5])
+def test_settings_that_runs_hold_differ_as_a_matern_covariance_says(settings, length):
+    """From one end to the other, however long the length is."""
+    one = Input("gamma", 0.0, 1.0, 1.0 / (settings - 1))
+    found = covariance(SmoothFunctions.over((one,)), np.array([[0.0], [1.0]]), [length])
+    differ = np.array([1.0, -1.0])
+    true = matern(one, np.array([0.0, 1.0]), np.array([0.0, 1.0]), length)
+    assert differ @ found @ differ == pytest.approx(differ @ true @ differ, rel=0.1)
+
+
+@pytest.mark.parametrize("length", [0.05, 0.1, 0.2])
+def test_functions_of_a_swept_condition_have_a_matern_covariance(length):
+    """But near the ends, where there is more of it."""
+    swept = Input("alpha", -0.2, 0.3, 0.5 / 12.0)
+    at = np.linspace(-0.05, 0.15, 9)
+    found = covariance(SmoothFunctions.over((swept,)), at[:, None], [length])
+    assert found == pytest.approx(matern(swept, at, at, length), abs=0.2)
+
+
+CONDITIONS = (
+    Input("alpha", 0.0, 2.0, 1.0), Input("kappa", 0.0, 12.0, 1.0), Input("Fz", 0.0, 3.0, 1.0), Input("gamma", 0.0, 2.0, 1.0),
+    Input("p", 0.0, 2.0, 1.0), Input("T", 0.0, 4.0, 1.0),
+)  # fmt: skip
+LENGTHS = (1.1, 3.0, 2.5, 2.5, 1.5, 3.0)
+
+
+def test_a_model_error_over_many_conditions_is_predicted_as_by_its_covariance():
+    """Of a test of all combinations of three sideslips, three cambers, three pressures and four loads, each at a temperature."""
+    random = np.random.default_rng(4)
+    held = np.array([*np.ndindex(3, 4, 3, 3)], dtype=float)
+    held = np.column_stack([held, random.uniform(0.0, 4.0, len(held))])
+    at = np.repeat(held, 7, axis=0)
+    at = np.insert(at, 1, np.tile(np.linspace(0.0, 12.0, 7), len(held)), axis=1)
+    each = [matern(one, x, x, size) for one, x, size in zip(CONDITIONS, at.T, LENGTHS, strict=True)]
+    alike, n = np.prod(each, axis=0), len(at)
+    force = np.linalg.cholesky(alike + 1e-9 * np.eye(n)) @ random.standard_normal(n)
+    noise = 0.1
+    read = force + noise * random.standard_normal(n)
+    out = np.repeat(np.arange(len(held)) % 8 == 3, 7)
+    known = alike[np.ix_(~out, ~out)] + noise**2 * np.eye(np.sum(~out))
+    best = alike[np.ix_(out, ~out)] @ np.linalg.solve(known, read[~out])
+
+    smooth = SmoothFunctions.over(CONDITIONS, lengths=LENGTHS)
+    columns = smooth.columns(at)
+    model = Mixed(read / noise, columns / noise, np.zeros((n, 1)), [np.flatnonzero(~out)])
+    given = model.alike(smooth.log_variance(np.array(LENGTHS))[0])
+    predicted = columns[out] @ model.posterior(given).mean
+    assert rms(predicted - force[out]) < 1.1 * rms(best - force[out])
 
 
 def test_shares_of_all_functions_are_the_whole_variance():
@@ -80,9 +115,28 @@ def test_a_tyre_at_one_condition_has_a_constant_only():
 def test_many_conditions_keep_to_the_largest_functions():
     """Ten conditions would have a billion products."""
     smooth = SmoothFunctions.over(tuple(Input(f"x{i}", 0.0, 1.0, 0.1 if i < 3 else 1.0) for i in range(10)))
-    assert len(smooth.orders) == constants.FUNCTIONS
+    assert len(smooth.orders) == constants.FUNCTIONS_AT_FIRST
     shares = smooth.log_variance(np.full(10, 1.0))[0]
     assert shares.max() < 0.0
+    assert len(SmoothFunctions.over(smooth.inputs, lengths=[1.0] * 10).orders) == constants.FUNCTIONS
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+@pytest.mark.parametrize("negligible", [0.1, 0.01])
+def test_functions_are_left_out_that_add_little(negligible, sign):
+    inputs = (
+        Input("alpha", -0.2, 0.2, 0.05, mirrored=True),
+        LOAD,
+        Input("gamma", -0.3, 0.3, 0.1, mirrored=True),
+    )
+    all_of_them, some = (
+        SmoothFunctions.over(inputs, sign, [0.2, 1500.0, 0.4], share) for share in (0.0, negligible)
+    )
+    shortest = np.array([0.1, 1000.0, 0.2])  # for which they are chosen
+    whole, left = (np.exp(one.log_variance(shortest)[0]).sum() for one in (all_of_them, some))
+    fewer = np.exp(some.log_variance(shortest)[0][:-1]).sum()
+    assert len(some.orders) < len(all_of_them.orders)
+    assert fewer < whole - negligible <= left
 
 
 @pytest.mark.parametrize("sign", [-1, 1])
@@ -116,7 +170,10 @@ def test_functions_are_chosen_for_the_likely_lengths():
     inputs = tuple(Input(f"x{i}", 0.0, 1.0, 0.1) for i in range(4))
     first, again = (SmoothFunctions.over(inputs, lengths=at) for at in (None, (0.1, 5.0, 5.0, 5.0)))
     assert first.orders[:, 0].max() < again.orders[:, 0].max()
-    assert again.orders[:, 1:].max() < first.orders[:, 1:].max()
+    first, again = (
+        np.exp(one.log_variance(np.array([0.1, 5.0, 5.0, 5.0]))[0]).sum() for one in (first, again)
+    )
+    assert first < 0.9 < 0.99 < again
 
 
 def test_what_no_setting_shows_of_a_difference_is_that_of_drawn_functions():

@@ -56,13 +56,13 @@ def test_what_the_formula_misses_is_added(foretold, true, column):
     assert rms(true[column] - foretold[best]) < 0.6 * rms(true[column] - foretold[column])
 
 
-@pytest.mark.parametrize(("column", "most"), [("Fy_N", 0.995), ("Mz_Nm", 1.0)])
-def test_the_truth_lies_within_the_interval_of_the_best_estimate(foretold, true, column, most):
+@pytest.mark.parametrize(("column", "most", "wide"), [("Fy_N", 0.995, 3.0), ("Mz_Nm", 1.0, 5.0)])
+def test_the_truth_lies_within_the_interval_of_the_best_estimate(foretold, true, column, most, wide):
     """The rig is declared as exact, but for the zero of Mz, which nothing declares."""
     best = column.replace("_", "_best_")
     error, half = true[column] - foretold[best], COVERAGE_FACTOR_95 * foretold[f"u_{best}"]
     assert 0.88 <= np.mean(np.abs(error) < half) <= most
-    assert rms(half.to_numpy()) < 4.0 * rms(error)
+    assert rms(half.to_numpy()) < wide * rms(error)
 
 
 def test_readings_of_new_runs_lie_within_their_intervals(foretold, true):
