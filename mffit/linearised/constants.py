@@ -5,7 +5,7 @@ from __future__ import annotations
 from tir.constant import Count, Real, Series
 
 FUNCTIONS = Count(600, "-", "Most functions of the model error of a channel.")
-FUNCTIONS_AT_FIRST = Count(300, "-", "The same while the lengths of the model error are not known.")
+FUNCTIONS_AT_FIRST = Count(300, "-", "The same while its lengths are not known, or if it is less than noise.")
 LEFT_OUT = Real(
     0.3,
     "-",

@@ -42,7 +42,7 @@ class SmoothFunctions(ReadOnlyArrays):
         """The basis functions with the largest prior variance at the shortest lengths, or near the likely ``lengths`` (d,).
 
         Of mirrored conditions, only those are used that a mirror multiplies by ``sign``. The smallest ones, which together have
-        at most a ``negligible`` share of the variance, are left out.
+        at most a ``negligible`` share of the variance, are left out if there are many.
         """
         orders, size, mirror = np.zeros((1, 0), dtype=int), np.ones(1), np.ones(1)
         most, even = constants.FUNCTIONS if lengths else constants.FUNCTIONS_AT_FIRST, 1.0
@@ -60,7 +60,8 @@ class SmoothFunctions(ReadOnlyArrays):
             orders, size, mirror = orders[kept], size[kept], mirror[kept]
         way = sign if any(one.mirrored for one in inputs) else 1
         orders, told = orders[mirror == way], np.cumsum(size[mirror == way])
-        return cls(inputs, orders[: 1 + np.searchsorted(told, 0.5 * (1.0 + way * even) - negligible)])
+        enough = 1 + np.searchsorted(told, 0.5 * (1.0 + way * even) - negligible)
+        return cls(inputs, orders[: max(enough, constants.FUNCTIONS_AT_FIRST)])
 
     def columns(self, at: np.ndarray) -> np.ndarray:
         """Values (n, m) at conditions (n, d), which are clipped to the tested range.

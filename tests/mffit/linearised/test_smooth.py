@@ -123,7 +123,8 @@ def test_many_conditions_keep_to_the_largest_functions():
 
 @pytest.mark.parametrize("sign", [-1, 1])
 @pytest.mark.parametrize("negligible", [0.1, 0.01])
-def test_functions_are_left_out_that_add_little(negligible, sign):
+def test_functions_are_left_out_that_add_little(negligible, sign, monkeypatch):
+    monkeypatch.setattr(constants, "FUNCTIONS_AT_FIRST", 1)
     inputs = (
         Input("alpha", -0.2, 0.2, 0.05, mirrored=True),
         LOAD,
