@@ -13,7 +13,6 @@ from mffit.diagnosis.answer import answer, named_effects, not_accepted
 from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.estimated import beyond_build, odd_runs
 from mffit.diagnosis.explain import explain
-from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.inexact import with_rig
 from mffit.diagnosis.needs import possible, without
@@ -27,6 +26,7 @@ from mffit.diagnosis.notes import (
     OneSweep,
     TakenOff,
     WithinPlay,
+    WithoutModelError,
 )
 from mffit.diagnosis.priors import declared_priors, zeros_of_setups
 from mffit.diagnosis.problem import DiagnosisProblem
@@ -92,11 +92,14 @@ def _notes(
     """What the reader of a diagnosis must know in addition to its effects."""
     found = confirmed.found
     playing = int(np.sum(done.explanation.refined.state.floats(done.explanation.problem.points)))
+    more = {} if confirmed.rest else beyond_build(found, search)
+    left = LeftByBuild(search.asked.left) if found.smooth.expected and not confirmed.rest else None
     remarks = (
         *(TakenOff(sentence) for sentence in search.asked.taken_off),
+        WithoutModelError(search.asked.missed) if search.asked.missed else None,
         wrong,
-        odd_runs(done.explanation, search),
-        None if confirmed.rest else _of_build(found, search),
+        odd_runs(done.explanation, search, doubted=bool(confirmed.rest or more)),
+        MoreThanBuild(more) if more else left,
         without_noise(found.scatter),
         *offsets_or_memory(found.scatter, search.candidates, found.chosen.ids),
         WithinPlay(playing) if playing else None,
@@ -105,15 +108,6 @@ def _notes(
         done.refused,
     )
     return [note for note in remarks if note is not None]
-
-
-def _of_build(found: Explanation, search: Search) -> DiagnosisNote | None:
-    """What is missed against what the build of the file left."""
-    if more := beyond_build(found, search):
-        return MoreThanBuild(more)
-    if found.smooth.expected:
-        return LeftByBuild({name: search.asked.left[name] for name in search.allowed})
-    return None
 
 
 def _simulation(points: Points, tyre: Tyre, config: Config, rig: Mapping[str, float] | None) -> Simulation:

@@ -118,9 +118,14 @@ def beyond_build(found: Explanation, search: Search) -> dict[str, tuple[float, f
     return out
 
 
-def odd_runs(found: Explanation, search: Search) -> OddLevel | None:
-    """The runs that read a share more or less than the file of a build says, or the corrected model."""
-    left, plain = search.asked.left, found.plain
+def odd_runs(found: Explanation, search: Search, *, doubted: bool) -> OddLevel | None:
+    """The runs that read a share more or less than the file of a build says, or the corrected model.
+
+    In the runs at one level a build may leave more than in all together: unless something else makes the model ``doubted``, its
+    model error counts as well, although it is known.
+    """
+    asked, plain = search.asked, found.plain
+    left = {n: x if doubted else math.hypot(x, asked.missed.get(n, 0.0)) for n, x in asked.left.items()}
     state = with_given_coefficients(found, search) if left else found.refined.state
     simulated = plain.predict(state)
     return odd_level(plain.points, plain.measured - simulated, simulated, found.scatter, left)

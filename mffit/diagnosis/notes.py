@@ -196,17 +196,35 @@ class ModelOfLastBuild:
 
 
 @dataclass(frozen=True, slots=True)
-class LeftByBuild:
-    """What remains may be what the formula cannot follow, because the build of the model left as much of its own readings."""
+class WithoutModelError:
+    """The model error that the build of the model found is taken out of the readings."""
 
-    left: Mapping[str, float]  #: by channel, rms beyond the noise [N], [Nm]
+    missed: Mapping[str, float]  #: by channel, rms at the build's own readings [N], [Nm]
 
     @property
     def sentence(self) -> str:
-        sizes = [f"{short(x)} {CHANNELS[n].unit} in {CHANNELS[n].word}" for n, x in self.left.items()]
+        return (
+            f"The model error that the build of the model found, {_sizes(self.missed)} rms, is taken out of the readings; the "
+            "gap of all readings, uncorrected, has it."
+        )
+
+
+def _sizes(of: Mapping[str, float]) -> str:
+    """A size of every channel, in words."""
+    return listed([f"{short(x)} {CHANNELS[name].unit} in {CHANNELS[name].word}" for name, x in of.items()])
+
+
+@dataclass(frozen=True, slots=True)
+class LeftByBuild:
+    """What remains may be what the formula cannot follow, because the build of the model left as much of its own readings."""
+
+    left: Mapping[str, float]  #: by channel, rms beyond noise and known model error [N], [Nm]
+
+    @property
+    def sentence(self) -> str:
         return (
             "What remains is taken for what the formula cannot follow: of its own readings the build of the model left "
-            f"{listed(sizes)} rms beyond the noise, and up to twice as much needs no cause."
+            f"{_sizes(self.left)} rms beyond what it explained, and up to twice as much needs no cause."
         )
 
 

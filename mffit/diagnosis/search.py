@@ -36,6 +36,8 @@ class Asked:
     seen: bool = False  #: whether the model was fitted to these points
     left: Mapping[str, float] = field(default_factory=dict)
     """By channel, the rms [N], [Nm] by which the model misses the points of its build beyond the noise; empty if unknown."""
+    missed: Mapping[str, float] = field(default_factory=dict)
+    """By channel, the rms [N], [Nm] there of the model error that was taken out of the readings; it is not part of ``left``."""
     repair_all: bool = False  #: whether every named effect is repaired, see :mod:`mffit.diagnosis.repair`
     as_read: Points | None = None  #: the points (n,) before known errors were subtracted, if any were
     taken_off: Sequence[str] = ()  #: sentences on what was subtracted

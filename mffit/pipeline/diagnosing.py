@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -15,10 +16,17 @@ from mffit import config as configuration
 from mffit.config import Config
 from mffit.diagnosis import Diagnosis, corrected_points, wording
 from mffit.diagnosis import diagnose as find_effects
-from mffit.diagnosis.notes import DiagnosisNote, DirectMethodRedone, ModelFittedFirst, ModelOfLastBuild
+from mffit.diagnosis.notes import (
+    DiagnosisNote,
+    DirectMethodRedone,
+    ModelFittedFirst,
+    ModelOfLastBuild,
+)
 from mffit.diagnosis.result import WITH_TERMS
+from mffit.diagnosis.search import Asked
 from mffit.diagnosis.strangers import another_tyre
 from mffit.effects import CATALOG, Effect
+from mffit.errors import InputError
 from mffit.made import made
 from mffit.output import UNKNOWN, Project, digest, output_folder, refuse_early, seen_from
 from mffit.pipeline.building import build
@@ -28,9 +36,13 @@ from mffit.pipeline.measuring import epsilon_gamma, without_play
 from mffit.pipeline.provenance import fitted_to, known_of_model, marked, rig_of_build, use_of
 from mffit.points import Points
 from mffit.points.loading import Reading
+from mffit.prediction.stored import load
 from mffit.progress import READING, Progress, silent
+from mffit.rig import Simulation
+from mffit.scatter import rms
 from mffit.sweeps import formats
 from tir import Tyre
+from tir.errors import TirError
 
 WRITTEN = ("diagnosis.json", "diagnosis.html")
 """Files that every diagnosis writes in addition to its property file."""
@@ -97,17 +109,45 @@ def _explained(
     if other is not None:
         progress(other.sentence)
     same = fitted_to(chosen.tyre, config)
+    known = known_of_model(chosen.tyre, config, chosen.file, same=same, fresh=chosen.fresh)
+    points, known = without_model_error(reading.points, chosen, known)
     asked = replace(
-        known_of_model(chosen.tyre, config, chosen.file, same=same, fresh=chosen.fresh),
+        known,
         rig=rig_of_build(chosen.tyre) if same else None,
         effects=effects,
         repair_all=repair_all,
-        as_read=reading.as_read,
+        as_read=reading.points if reading.as_read is None else reading.as_read,
         taken_off=reading.taken_off,
         culprits=other is None,
     )
-    found = find_effects(reading.points, chosen.tyre, config, asked, progress)
+    found = find_effects(points, chosen.tyre, config, asked, progress)
     return replace(found, notes=(*([] if other is None else [other]), *chosen.notes, *found.notes))
+
+
+def without_model_error(points: Points, chosen: ChosenModel, known: Asked) -> tuple[Points, Asked]:
+    """The points without the model error that the build of the model found, and the question with what the build left then.
+
+    A formula misses the same tyre alike in every campaign, so this is neither an effect nor noise.
+    """
+    if not known.left or chosen.file is None:
+        return points, known
+    try:
+        predictor, _, fitted = load(chosen.file.parent)
+    except (InputError, TirError):  # a build of an earlier version, or a folder that was tidied
+        return points, known
+    if dict(fitted.values) != dict(chosen.tyre.values):
+        return points, known
+    missed = {
+        name: own.size for name, own in predictor.channels.items() if own.is_proven and name in known.left
+    }
+    model = Simulation.of(fitted, turn_slip=predictor.curved)
+    u = {name: rms(predictor.u_missed(name, model, points)) for name in missed}
+    left = dict(known.left) | {
+        name: math.hypot(math.sqrt(max(known.left[name] ** 2 - size**2, 0.0)), u[name])
+        for name, size in missed.items()
+    }
+    without = {name: points.channel(name) - predictor.missed(name, points) for name in missed}
+    return points.replace(**without), replace(known, left=left, missed=missed)
 
 
 def _stated(

@@ -16,7 +16,7 @@ from mffit.least_squares import root
 from mffit.linearised import LinearisedChannel, LinearisedFit
 from mffit.linearised.combined import Combinations
 from mffit.linearised.components import Components
-from mffit.linearised.inputs import SLIPS, Input
+from mffit.linearised.inputs import SLIPS, Input, forwards, turned
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.numbers import Numbers
 from mffit.points import Points, main_path, make_points
@@ -92,6 +92,11 @@ class MissedChannel(ReadOnlyArrays):
     def mean(self, settings: np.ndarray) -> np.ndarray:
         """The model error (n,) alone, as in :meth:`at`, averaged over conditions that are NaN."""
         return np.asarray(self._functions(settings)[1] @ self.missed)
+
+    def u(self, settings: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+        """Standard uncertainty (n,) of coefficients and model error together; ``settings`` and ``slopes`` as in :meth:`at`."""
+        (both,) = self._rows(np.nan_to_num(self._functions(settings)[1]), slopes)
+        return np.asarray(np.sqrt(np.sum(both**2, axis=1)))
 
     def u_between(self, settings: np.ndarray, slopes: np.ndarray, *, at_zero: bool) -> float:
         """Standard uncertainty of the difference of two forces at ``settings`` (2, d), with their derivatives ``slopes`` (2, k).
@@ -349,10 +354,16 @@ class Predictor(ReadOnlyArrays):
         return out
 
     def missed(self, name: str, points: Points) -> np.ndarray:
-        """The estimated model error (n,) of a channel, averaged over conditions that are not stated."""
-        channel = self.channels[name]
+        """The estimated model error (n,) of a channel, rolling either way, averaged over conditions that are not stated."""
+        channel, sign, points = self.channels[name], turned(points, name), forwards(points)
         left = self._left(channel, points)
-        return np.asarray(left.share * channel.mean(_stated(points, channel.smooth.inputs)))
+        return np.asarray(sign * left.share * channel.mean(_stated(points, channel.smooth.inputs)))
+
+    def u_missed(self, name: str, fitted: Simulation, points: Points) -> np.ndarray:
+        """Standard uncertainty (n,) of what formula and model error give together for a reading of the same rig."""
+        channel, slopes = self.channels[name], fitted.sensitivities(points, self.names, (name,))[1][name]
+        at = _stated(forwards(points), channel.smooth.inputs)
+        return channel.u(at, turned(points, name)[:, None] * slopes)
 
     def _left(self, channel: MissedChannel, points: Points) -> Remaining:
         """What is left of a channel's model error, by the rule of :class:`tir.correction.Correction`."""

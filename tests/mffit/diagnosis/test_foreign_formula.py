@@ -5,7 +5,6 @@ The brush of ``brush.py`` and the tyre of four lines of ``disc_project.py`` are 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -19,7 +18,7 @@ from disc_project import disc_project
 import mffit
 import tir
 from mffit.diagnosis import Diagnosis
-from mffit.diagnosis.notes import LeftByBuild
+from mffit.diagnosis.notes import WithoutModelError
 from mffit.diagnosis.odd_level import OddLevel
 from mffit.diagnosis.rest import Answer
 from tir import Tyre
@@ -92,8 +91,9 @@ def test_what_a_build_left_of_its_own_readings_is_not_missing_in_others(built_br
     assert not found.effects
     assert not found.unexplained
     assert found.trusted
-    (note,) = [note for note in found.notes if isinstance(note, LeftByBuild)]
-    assert 6.0 < note.left["Fy"] < 15.0
+    (note,) = [note for note in found.notes if isinstance(note, WithoutModelError)]
+    assert 6.0 < note.missed["Fy"] < 15.0
+    assert found.gap_examined.rms("Fy") < 0.85 * found.gap_before.rms("Fy")
 
 
 def test_zeros_of_the_rig_are_no_gap_beside_what_the_build_left(built_toy, tmp_path):
@@ -177,11 +177,12 @@ def test_one_load_that_reads_wrong_is_said(built_brush, tmp_path, load, gain):
     assert found.headline.startswith(f"The side force of the runs at a load of {load:.0f} N is ")
 
 
-def test_a_gain_of_all_runs_is_said_where_coefficients_take_it_up(built_brush, tmp_path):
+def test_a_gain_of_all_runs_is_named_beside_what_the_build_left(built_brush, tmp_path):
     found = mffit.diagnose(with_gain(brush.written(Brush(), tmp_path, 85), 1.04), built_brush)
-    assert found.gap_examined.rms("Fy") > 25.0
-    assert found.answer is Answer.UNDECIDED
-    assert re.match(r"The side force of all runs is (3\.[5-9]|4\.\d) % larger than simulated", found.headline)
+    assert [one.effect.id for one in found.repaired] == ["loadcell-gain"]
+    value, u = found.effects[0].parameters["gain"]
+    assert abs(value - 1.04) < 2.0 * u
+    assert found.gap_after.rms("Fy") < 0.3 * found.gap_examined.rms("Fy")
 
 
 def test_where_a_switch_cures_no_coefficient_moves(built_toy, tmp_path):
