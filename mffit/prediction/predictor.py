@@ -95,7 +95,7 @@ class MissedChannel(ReadOnlyArrays):
 
     def u(self, settings: np.ndarray, slopes: np.ndarray) -> np.ndarray:
         """Standard uncertainty (n,) of coefficients and model error together; ``settings`` and ``slopes`` as in :meth:`at`."""
-        (both,) = self._rows(np.nan_to_num(self._functions(settings)[1]), slopes)
+        both = np.hstack([np.nan_to_num(self._functions(settings)[1]), slopes]) @ self.root
         return np.asarray(np.sqrt(np.sum(both**2, axis=1)))
 
     def u_between(self, settings: np.ndarray, slopes: np.ndarray, *, at_zero: bool) -> float:
