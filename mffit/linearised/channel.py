@@ -136,8 +136,9 @@ class LinearisedChannel(ReadOnlyArrays):
         plain = replace(self.model, common=self.model.common[:, functions:])
         return self._left_out(plain, given._replace(common=given.common[functions:]), rows)
 
-    def by_others(self, rows: np.ndarray) -> LeftOutReadings:
-        """Prediction of a run's ``rows`` from other runs, for a model whose fit and components exclude that run.
+    def by_others(self, rows: np.ndarray, alike: Sequence[np.ndarray] = ()) -> list[LeftOutReadings]:
+        """Prediction of a run's ``rows`` from other runs, for a model whose fit and components exclude that run; then of each run
+        ``alike``, from the runs other than both.
 
         Few runs determine how fast the model error changes over a condition that no run sweeps, such as the load. Its length is
         therefore limited to the spacing of the settings.
@@ -150,8 +151,8 @@ class LinearisedChannel(ReadOnlyArrays):
         model = self._with(smooth, self.model)
         terms = Terms(model, smooth, np.zeros(self.turn.shape[1]))
         given = terms.variances(replace(self.components, lengths=lengths))
-        (found,) = self._left_out(model, given, [rows])
-        return found
+        own, *both = self._left_out(model, given, [rows, *(np.append(rows, one) for one in alike)])
+        return [own, *(found.only(one) for found, one in zip(both, alike, strict=True))]
 
     @cached_property
     def proof_of_noise(self) -> float:

@@ -268,6 +268,11 @@ class LeftOutReadings(NamedTuple):
     error: np.ndarray  #: (k,) measured less predicted
     covariance: np.ndarray  #: (k, k) of the error: from prediction, random effects and noise
 
+    def only(self, rows: np.ndarray) -> LeftOutReadings:
+        """The same of some of the readings."""
+        which = np.isin(self.rows, rows)
+        return LeftOutReadings(self.rows[which], self.error[which], self.covariance[np.ix_(which, which)])
+
     def chi2(self, left: np.ndarray) -> float:
         """Sum of squares of remaining errors (k,) in units of the covariance."""
         return float(left @ np.linalg.solve(self.covariance, left))

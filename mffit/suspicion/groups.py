@@ -1,11 +1,11 @@
 """Groups of points that would share a mistake: every sweep, and every condition of a sweep with several conditions."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.constants import FEWEST
+from mffit.constants import FEWEST, MOST
 from mffit.points import Points, levels
 from mffit.quantities import COLUMNS
 from tir.frozen import ReadOnlyArrays
@@ -27,6 +27,30 @@ def groups(points: Points) -> list[Group]:
     unique = {group.index.tobytes(): group for group in reversed(found)}
     # Only a minority of the points can contradict the others.
     return [g for g in reversed(unique.values()) if FEWEST <= len(g.index) <= 0.5 * len(points)]
+
+
+def kind_of(points: Points, index: np.ndarray) -> tuple[str, bool, tuple[int, ...]]:
+    """What rows (m,) have in common with those of which the formula misses alike: the slip or angle that they move most, relative
+    to all points, whether most are driven or braked, and, without sideslip that moves, the sizes of held angles, in tolerances.
+    """
+    moved = {
+        name: float(np.ptp(getattr(points, name)[index])) / (float(np.ptp(getattr(points, name))) or np.inf)
+        for name in ("alpha", "kappa", "gamma")
+    }
+    moving = max(moved, key=lambda name: moved[name])
+    held = [] if moving == "alpha" else [name for name in ("alpha", "gamma") if name != moving]
+    sizes = (
+        float(np.median(np.abs(getattr(points, name)[index]))) / levels.KINDS[name].tolerance for name in held
+    )
+    return moving, bool(np.mean(points.free_rolling[index]) < MOST), tuple(map(round, sizes))
+
+
+def alike(points: Points, group: Group, every: Sequence[Group]) -> list[Group]:
+    """Whole sweeps of the group's kind, of other files if there are any: a file may share its mistake; empty without any."""
+    kind = kind_of(points, group.index)
+    found = [g for g in every if g.whole and not np.isin(g.index, group.index).any()]
+    found = [g for g in found if kind_of(points, g.index) == kind]
+    return [g for g in found if g.file != group.file] or found
 
 
 def readings_of(points: Points) -> np.ndarray:

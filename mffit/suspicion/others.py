@@ -13,7 +13,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from scipy.special import chdtrc, ndtr
+from scipy.special import chdtrc, fdtrc, ndtr
 
 from mffit.as_json import keys
 from mffit.constants import CANDIDATES_FITTED, CERTAIN_SIGMA, FEWEST, MOST, PREDICTION_FALSE_ALARM
@@ -22,9 +22,9 @@ from mffit.points import Points
 from mffit.points.constants import UNLIKE_SHARE
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
-from mffit.scatter import rms, usual_size
+from mffit.scatter import EFFICIENCY, rms, usual_size
 from mffit.suspicion import constants
-from mffit.suspicion.groups import Group, confirmed_by_others, groups
+from mffit.suspicion.groups import Group, alike, confirmed_by_others, groups
 from mffit.suspicion.rereadings import Away, Errors, Mistake, certain_mistakes, explaining, explanation, moved
 from mffit.suspicion.rule import Facts, Outcome, When, rule
 from tir.frozen import ReadOnlyArrays
@@ -62,6 +62,9 @@ class Error(NamedTuple):
     share: float  #: rms error less its uncertainty, as a share of the channel's usual size at this load
     chance: float  #: probability of such an error for a sound sweep
     vague: float  #: standard uncertainty of the prediction, noise included, as a share of the usual size
+    usual: float = (
+        0.0  #: probability of such an error if the formula misses this sweep as it misses those of its kind
+    )
 
     @property
     def facts(self) -> dict[str, Any]:
@@ -90,10 +93,14 @@ class Doubt(ReadOnlyArrays):
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Channels with a significant error."""
+        """Channels with a significant error that sweeps of its kind do not have: the formula misses those as well."""
         certain = float(ndtr(-CERTAIN_SIGMA))
         return tuple(
-            e.channel for e in self.errors if e.ratio > constants.DISTRUSTED_MISFIT and e.chance < certain
+            e.channel
+            for e in self.errors
+            if e.ratio > constants.DISTRUSTED_MISFIT
+            and e.chance < certain
+            and e.usual < ndtr(-constants.DOUBTFUL_SIGMA)
         )
 
     @property
@@ -137,7 +144,7 @@ def doubts(campaign: JudgedSweeps) -> tuple[Doubt, ...]:
     }
     out: list[Doubt] = []
     for group in _suspects(campaign, found, size):
-        doubt = _doubt(campaign, group, size)
+        doubt = _doubt(campaign, group, found, size)
         if doubt is not None:
             out.append(doubt)
             if doubt.mistake is not None:
@@ -248,20 +255,45 @@ def _error(name: str, found: LeftOutReadings, size: float) -> Error:
     )
 
 
-def _doubt(campaign: JudgedSweeps, group: Group, size: Mapping[str, float]) -> Doubt | None:
+def _beyond_noise(found: LeftOutReadings, noise: float) -> float:
+    """Rms error of a prediction beyond the noise, without the worst points."""
+    kept = without_worst(np.abs(found.error))
+    return math.sqrt(max(rms(found.error[kept]) ** 2 - noise**2, 0.0))
+
+
+def _usual(errors: Sequence[float]) -> float:
+    """Probability of the first error among those of other sweeps, each relative to its load; 1 without others, which alone
+    could say what the sweep should read. An error that is smooth over a sweep shows as much as few readings do.
+    """
+    own, *others = errors
+    if not own or not others:
+        return 1.0
+    size, known = float(np.median(others)), EFFICIENCY * FEWEST * len(others)
+    return float(fdtrc(FEWEST, known, (own / size) ** 2)) if size else 0.0
+
+
+def _doubt(
+    campaign: JudgedSweeps, group: Group, every: Sequence[Group], size: Mapping[str, float]
+) -> Doubt | None:
     """The group judged by a fit without it; None if the other points are too few for a fit."""
     try:
         fitted = campaign.refit(group.index)
     except InputError:
         return None
     load = float(np.mean(campaign.points.Fz[group.index]))
-    found = {}
+    found, usual = {}, {}
+    comparable = alike(campaign.points, group, every)
     for name, channel in fitted.left.channels.items():
-        rows = np.flatnonzero(np.isin(channel.rows, group.index))
+        rows, *like = (np.flatnonzero(np.isin(channel.rows, g.index)) for g in (group, *comparable))
         if len(rows):
-            one = channel.by_others(rows)
+            predicted = channel.by_others(rows, [one for one in like if len(one)])
+            one = predicted[0]
             found[name] = one._replace(rows=channel.rows[one.rows])
-    errors = [_error(name, one, size[name] * load) for name, one in found.items()]
+            Fz = channel.seen.points.Fz
+            usual[name] = _usual(
+                [_beyond_noise(one, channel.noise) / float(np.mean(Fz[one.rows])) for one in predicted]
+            )
+    errors = [_error(name, one, size[name] * load)._replace(usual=usual[name]) for name, one in found.items()]
     if not errors:
         return None
     part = _part(campaign.points, group, found)
