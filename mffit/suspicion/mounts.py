@@ -11,7 +11,6 @@ import numpy as np
 
 from mffit.constants import FEWEST, MOST
 from mffit.points import Points
-from mffit.scatter import robust
 from mffit.suspicion.rule import Facts, Outcome, When, rule
 from tir.parameters import BY_NAME
 
@@ -29,8 +28,9 @@ if TYPE_CHECKING:
 def undeclared_mount(points: Points, fitted: FittedModel) -> Iterator[Facts]:
     """Evidence for another mount of one file or several.
 
-    The asymmetries of the tyre are refitted, because the files with another mount have distorted them. The model error is left
-    aside, because a mount would hide in it.
+    The asymmetries of the tyre are refitted, because the files with another mount have distorted them. The model error is one of
+    each file, as large as estimated: what the formula misses anyway, it may miss anywhere in a file alike. What is beyond that
+    and the noise must mostly be due to the mount, because the formula misses more in some files than estimated for all.
     """
     from mffit.linearised.components import LIKELY_EVIDENCE  # after a fit only
 
@@ -51,7 +51,8 @@ def undeclared_mount(points: Points, fitted: FittedModel) -> Iterator[Facts]:
             break
         best, files = better, more
     gain = best - evidence(())
-    if gain > LIKELY_EVIDENCE and sum(share[list(files)]) < MOST:
+    beyond = sum(max(one.stride * float(one.square[0].sum()) - one.readings, 0.0) for one in told)
+    if gain > LIKELY_EVIDENCE and 2.0 * gain > MOST * beyond and sum(share[list(files)]) < MOST:
         yield {"files": " and ".join(points.files[k] for k in sorted(files)), "sigma": math.sqrt(2.0 * gain)}
 
 
@@ -66,6 +67,7 @@ class _Told(NamedTuple):
     pull: np.ndarray  #: (2, files, k)
     square: np.ndarray  #: (2, files) sums of squared residuals
     stride: int  #: readings that each examined one represents
+    readings: int  #: number of readings
 
     def evidence(self, files: Sequence[int]) -> float:
         """Log evidence of the readings if these files have the other mount."""
@@ -79,27 +81,35 @@ class _Told(NamedTuple):
 
 
 def _told(points: Points, fitted: FittedModel) -> Iterator[_Told]:
-    """The sums of all channels, without the model error and random effects of runs, in which a mount would hide."""
+    """The sums of all channels, weighted by the covariance of noise and model error within each file."""
     names = list(fitted.left.channels)
     other = points.replace(mount=-points.mount)
     here, there = (fitted.simulation.readings(one, names) for one in (points, other))
     odd = [number.name in BY_NAME and BY_NAME[number.name].odd for number in fitted.left.numbers]
     for name, channel in fitted.left.channels.items():
-        size = channel.turn * np.exp(0.5 * channel.variances.common[len(channel.missed) :])
+        m, given = len(channel.missed), channel.variances
+        size = channel.turn * np.exp(0.5 * given.common[m:])
         change = (there[name] - here[name])[channel.rows] / channel.unit
-        scale = max(robust(channel.model.residual), 1.0)
-        columns = [
-            turned @ size / scale for turned in (channel.slopes, np.where(odd, -1.0, 1.0) * channel.slopes)
+        residual = channel.model.residual
+        sides = [
+            np.column_stack([channel.slopes @ size, residual]),
+            np.column_stack([np.where(odd, -1.0, 1.0) * channel.slopes @ size, residual - change]),
         ]
-        residuals = [one / scale for one in (channel.model.residual, channel.model.residual - change)]
-        file = points.file[channel.rows]
-        parts = [
-            [(x[file == k], r[file == k]) for k in range(len(points.files))]
-            for x, r in zip(columns, residuals, strict=True)
-        ]
+        error = channel.model.common[:, :m] * np.exp(0.5 * (given.common[:m] - given.noise))
+        files = [points.file[channel.rows] == k for k in range(len(points.files))]
+        sums = np.exp(-given.noise) * np.array([[_weighted(x[f], error[f]) for f in files] for x in sides])
         yield _Told(
-            np.array([[x.T @ x for x, _ in own] for own in parts]),
-            np.array([[x.T @ r for x, r in own] for own in parts]),
-            np.array([[r @ r for _, r in own] for own in parts]),
+            sums[..., :-1, :-1],
+            sums[..., :-1, -1],
+            sums[..., -1, -1],
             channel.stride,
+            channel.stride * len(residual),
         )
+
+
+def _weighted(x: np.ndarray, error: np.ndarray) -> np.ndarray:
+    """Products (k, k) of columns (n, k) over the covariance of unit noise and of an error that is ``error`` (n, m) times
+    independent numbers of unit variance.
+    """
+    across = error.T @ x
+    return np.asarray(x.T @ x - across.T @ np.linalg.solve(np.eye(error.shape[1]) + error.T @ error, across))
