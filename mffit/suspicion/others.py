@@ -261,6 +261,16 @@ def _beyond_noise(found: LeftOutReadings, noise: float) -> float:
     return math.sqrt(max(rms(found.error[kept]) ** 2 - noise**2, 0.0))
 
 
+def _scatters(found: LeftOutReadings, noise: float) -> bool:
+    """Whether a prediction's errors differ between neighbouring readings by far more than the noise, which no formula makes."""
+    bends = np.diff(found.error, 2) / (math.sqrt(6.0) * noise)
+    own = bends[without_worst(np.abs(bends))]
+    far = rms(own) > constants.DISTRUSTED_MISFIT
+    return bool(
+        far and chdtrc(len(own) / 2.0, own @ own / 2.0) < ndtr(-CERTAIN_SIGMA)
+    )  # neighbours share readings
+
+
 def _usual(errors: Sequence[float]) -> float:
     """Probability of the first error among those of other sweeps, each relative to its load; 1 without others, which alone
     could say what the sweep should read. An error that is smooth over a sweep shows as much as few readings do.
@@ -290,9 +300,8 @@ def _doubt(
             one = predicted[0]
             found[name] = one._replace(rows=channel.rows[one.rows])
             Fz = channel.seen.points.Fz
-            usual[name] = _usual(
-                [_beyond_noise(one, channel.noise) / float(np.mean(Fz[one.rows])) for one in predicted]
-            )
+            smooth = [_beyond_noise(one, channel.noise) / float(np.mean(Fz[one.rows])) for one in predicted]
+            usual[name] = 0.0 if _scatters(one, channel.noise) else _usual(smooth)
     errors = [_error(name, one, size[name] * load)._replace(usual=usual[name]) for name, one in found.items()]
     if not errors:
         return None

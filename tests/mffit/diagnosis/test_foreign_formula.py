@@ -67,7 +67,7 @@ def fitted_brush(built_brush) -> Tyre:
 
 def assert_named(found: Diagnosis, *effects: str) -> None:
     """These alone, and what the formula misses stays unexplained."""
-    assert [one.effect.id for one in found.effects] == list(effects)
+    assert {one.effect.id for one in found.effects} == {*effects}
     assert found.unexplained
 
 

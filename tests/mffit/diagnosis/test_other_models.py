@@ -48,7 +48,7 @@ def test_a_model_that_states_other_dimensions_is_the_reason(project):
 
 def test_a_model_that_misses_most_sweeps_is_the_reason(project):
     """The rear tyre under the front one's name and dimensions: 47 N where the noise is 3 N, in every sweep."""
-    assert_no_culprit(mffit.diagnose(project, renamed(rear())), "no single sweep is at fault")
+    assert_no_culprit(mffit.diagnose(project, renamed(rear())), "whether it is another specimen")
 
 
 def test_the_model_of_this_tyre_is_trusted(project):

@@ -8,6 +8,7 @@ import small_rigs
 
 from mffit.fit.bands import BandBesideSweeps, Bands, bands
 from mffit.fit.wording import bands_sentence, beside_sentence
+from mffit.linearised.combined import Combinations
 from mffit.linearised.components import Components
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import make_points
@@ -22,7 +23,9 @@ def known(names, root):
     """What is known of a tyre of the formula without noise: the covariance of its coefficients is root times its transpose."""
     root = np.vstack([np.zeros((1, root.shape[1])), root])
     nothing = Components(0.0, (), 0.0, 0.0, 0.0, 0.3, 0.0)
-    own = MissedChannel(SmoothFunctions.over(()), nothing, np.zeros(1), root, 0.0, 0.0, np.zeros(0), False)
+    tested = Combinations((), np.ones(()), np.zeros(()))
+    smooth = SmoothFunctions.over(())
+    own = MissedChannel(smooth, nothing, np.zeros(1), root, 0.0, 0.0, np.zeros(0), tested, False)
     return Predictor(0.0, names, {"Fx": own, "Fy": own}, {}, {}, (16.0, 16.0))
 
 

@@ -162,10 +162,7 @@ def test_what_is_missing_for_longitudinal_slip_is_said():
     assert (
         "RHX1" in right["combined-Fx"].held
     )  # the sweeps of sideslip alone go to both sides, which does not show it
-    assert any(
-        why.startswith("with longitudinal slip, sideslip was run to one")
-        for why in right["combined-Fx"].missing
-    )
+    assert any("sideslip was run to one side only" in why for why in right["combined-Fx"].missing)
     rolling = belt.programme(driven=False)
     assert {row.stage for row in coverage(rolling, "left")} == {
         *("Fy", "camber", "pressure", "trail", "residual", "spin", "shift")

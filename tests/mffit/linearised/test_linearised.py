@@ -180,7 +180,7 @@ def test_a_run_at_a_load_of_its_own_may_miss_otherwise_than_the_others(at_larges
     rows = np.flatnonzero(points.Fz > 2000.0)
     sigma = {"Fy": np.full(len(points), NOISE)}
     channel = linearised(points, simulation(), sigma, NUMBERS, without=rows).channels["Fy"]
-    found = channel.by_others(np.flatnonzero(np.isin(channel.rows, rows)))
+    (found,) = channel.by_others(np.flatnonzero(np.isin(channel.rows, rows)))
     assert found.error @ np.linalg.solve(found.covariance, found.error) / EACH < 2.5
     assert np.sqrt(np.mean(np.diag(found.covariance))) > MISSED
 
