@@ -13,6 +13,7 @@ import numpy as np
 
 from mffit.as_json import keys
 from mffit.config.models import Column
+from mffit.constants import CERTAIN_SIGMA
 from mffit.errors import InputError, meant
 from mffit.points.clock import spread
 from mffit.points.steady import gaps
@@ -20,6 +21,7 @@ from mffit.recordings.by_unit import KINDS, in_unit_of, named_alike
 from mffit.recordings.guess import NO_COLUMNS, ColumnChoice, corrected, guesses
 from mffit.recordings.tyre_constants import StatedByFile, stated_by
 from mffit.recordings.unstated import Guess, Remark
+from mffit.scatter import robust
 from mffit.sheets import file_of
 from mffit.sweeps import formats
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel, unknown_channel
@@ -87,6 +89,41 @@ def recordings_of(
         if file not in optional or file_of(file) not in readable:
             raise refusal
     return tuple(found), list(refused.values())
+
+
+def with_shared_units(recordings: Sequence[SniffedRecording]) -> tuple[SniffedRecording, ...]:
+    """The recordings, with angles of which no file states the unit in that of the recording that has the largest.
+
+    One rig writes a heading in one unit, and an angle that is held at zero is only noise, which shows none. Other angles keep
+    their own.
+    """
+    known: dict[str, tuple[float, str, Path]] = {}
+    for recording in recordings:
+        for guess in _angles(recording):
+            size = max(-guess.lower, guess.upper)
+            known[guess.heading] = max(
+                known.get(guess.heading, (0.0, "", Path())), (size, guess.unit, recording.path)
+            )
+
+    def shared(guess: Guess, path: Path) -> Guess:
+        _, unit, other = known[guess.heading]
+        values = numbers(formats.read(path).column(guess.heading))
+        # of white noise, third differences have a variance of 20
+        noise = robust(np.diff(values[np.isfinite(values)], 3)) / np.sqrt(20.0)
+        if guess.unit == unit or max(-guess.lower, guess.upper) > CERTAIN_SIGMA * noise:
+            return guess
+        why = f"{guess.lower:.3g} to {guess.upper:.3g} taken in {unit}, like {guess.heading} of {other.name}"
+        return guess._replace(unit=unit, why=why)
+
+    return tuple(
+        r._replace(guesses={**r.guesses, **{one.channel.name: shared(one, r.path) for one in _angles(r)}})
+        for r in recordings
+    )
+
+
+def _angles(recording: SniffedRecording) -> list[Guess]:
+    """The angles of which neither the file nor a user states the unit."""
+    return [one for one in recording.guesses.values() if one.assumed and one.channel.unit == "deg"]
 
 
 def check_headings(headings: Mapping[str, str], files: Sequence[Path]) -> None:

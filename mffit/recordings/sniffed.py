@@ -29,6 +29,7 @@ from mffit.recordings.recording import (
     recordings_of,
     rolls_backward,
     speed_is_negative,
+    with_shared_units,
 )
 from mffit.recordings.summary import BadRun, apart, bad_runs, two_specimens
 from mffit.recordings.tyre_constants import StatedByFile
@@ -121,6 +122,7 @@ def sniff(
         return recording_of(file, unloaded_radius, chosen.get(file), headings, columns)
 
     recordings, refused = recordings_of(files, of, optional=set(files) - set(named))
+    recordings = with_shared_units(recordings)
     bad = bad_runs(summaries)
     if len(bad) == len(recordings):
         raise InputError(f"every run is bad, as {bad[0].why}", file=files[0])

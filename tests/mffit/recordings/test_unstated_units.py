@@ -403,6 +403,22 @@ def test_a_spike_in_a_recording_casts_no_doubt_on_its_unit():
     assert "T_degC" not in guessed(TSTC=spike).found
 
 
+def test_an_angle_held_at_zero_is_in_the_unit_in_which_other_recordings_move_it(tmp_path):
+    """Noise of 0.01 would be 0.01 rad, too; an angle that moves in either unit keeps its own."""
+    noise = np.random.default_rng(2).normal(0.0, 0.01, (2, N))
+    braked = {"SA": noise[0], "IA": noise[1], "SL": 0.1 * WAVE, "FX": 2300.0 * WAVE, "FY": 20.0 * WAVE}
+    in_radians = {"SA": 0.15 * WAVE, "IA": np.full(N, 0.02)}
+    for name, other in {"swept": {}, "braked": braked, "radians": in_radians}.items():
+        pd.DataFrame(columns(**other)).to_csv(tmp_path / f"{name}.csv", index=False)
+
+    def found(*names: str) -> list[str]:
+        recordings = sniff([tmp_path / f"{name}.csv" for name in names]).recordings
+        return [one.guesses["alpha_deg"].unit for one in recordings]
+
+    assert found("swept", "braked") == ["deg", "deg"]
+    assert found("radians", "swept") == ["rad", "deg"]
+
+
 WRITTEN = """\
 # From the recordings below, as `mffit sniff` reads them. The comments say where each value comes from.
 
