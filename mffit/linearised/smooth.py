@@ -54,8 +54,9 @@ class SmoothFunctions(ReadOnlyArrays):
             orders = np.column_stack([np.repeat(orders, len(order), axis=0), np.tile(order, len(orders))])
             size, mirror = np.outer(size, share).ravel(), np.outer(mirror, odd).ravel()
             even *= odd @ share
-            # further factors are the same for all functions of a sign, so the smallest stay the smallest
-            largest = np.argsort(-size, kind="stable")
+            # further factors are the same for all functions of a sign, so the smallest stay the smallest; conditions of equal
+            # grids have functions of equal size, which rounding must not order
+            largest = np.argsort(-np.log(size).round(9), kind="stable")
             kept = np.concatenate([largest[mirror[largest] == way][:most] for way in (1, -1)])
             orders, size, mirror = orders[kept], size[kept], mirror[kept]
         way = sign if any(one.mirrored for one in inputs) else 1
