@@ -322,9 +322,8 @@ def _step(
         if promised <= least and not last:
             return None
         trial = np.clip(x + move, objective.lower, objective.upper)
-        here = (
-            objective.problem.linear(trial) if last else None
-        )  # the derivatives at the solution are asked for
+        # The derivatives at the solution are asked for.
+        here = objective.problem.linear(trial) if last else None
         data, limits = objective.problem.residual(trial) if here is None else (here.data, here.limits)
         new = objective.cost(trial, data, limits)
         return _Step(trial, new, next_damping(damping, cost - new, promised), here)

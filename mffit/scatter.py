@@ -1,5 +1,6 @@
 """Size and scatter of finite numbers, plain and robust against outliers."""
 
+import math
 from collections.abc import Iterable
 
 import numpy as np
@@ -48,6 +49,14 @@ def finite_median(x: np.ndarray) -> float:
 def robust(x: np.ndarray) -> float:
     """Robust standard deviation of the finite values around zero, from the median; NaN if there are none."""
     return NORMAL * finite_median(np.abs(x))
+
+
+def bends(values: np.ndarray, order: int) -> np.ndarray:
+    """Differences (n - order,) of this order between successive values, of which a smooth curve leaves hardly any.
+
+    Of white noise they have the standard deviation of the noise.
+    """
+    return np.asarray(np.diff(values, order) / math.sqrt(math.comb(2 * order, order)))
 
 
 def usual_size(groups: Iterable[np.ndarray]) -> float:

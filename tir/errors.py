@@ -60,6 +60,11 @@ def listed(words: Sequence[str]) -> str:
     return f"{', '.join(first)} and {last}" if first else last
 
 
+def begun(text: str) -> str:
+    """A text with a capital at its beginning, as a sentence begins."""
+    return f"{text[:1].upper()}{text[1:]}"
+
+
 def some(names: Sequence[str]) -> str:
     """The first of many names, and the number of the others."""
     shown = NAMES_IN_A_SENTENCE

@@ -106,7 +106,9 @@ def with_given_coefficients(found: Explanation, search: Search) -> Simulation:
 
 def beyond_build(found: Explanation, search: Search) -> dict[str, tuple[float, float]]:
     """By channel, what a built file misses beyond the noise and what its build left, if it is more than twice that."""
-    plain, out = found.plain, {}
+    plain, out = found.plain, dict[str, tuple[float, float]]()
+    if not search.asked.left:
+        return out
     away = plain.measured - plain.predict(with_given_coefficients(found, search))
     missed = plain.noise.by_channel(np.where(np.isfinite(plain.noise.u), away, np.nan))
     u = found.scatter.by_channel(found.scatter.u)

@@ -13,7 +13,7 @@ from mffit.effects import NEEDS, Effect
 from mffit.quantities import CHANNELS
 from mffit.rounding import to_uncertainty
 from tir import Quantity
-from tir.errors import counted, listed
+from tir.errors import begun, counted, listed
 from tir.parameters import BY_NAME
 
 
@@ -88,7 +88,7 @@ class TakenOff:
 
     @property
     def sentence(self) -> str:
-        return f"{self.said[:1].upper()}{self.said[1:]}. The gap of all readings, uncorrected, has it; all else is without it."
+        return f"{begun(self.said)}. The gap of all readings, uncorrected, has it; all else is without it."
 
 
 @dataclass(frozen=True, slots=True)

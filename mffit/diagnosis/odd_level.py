@@ -25,9 +25,8 @@ class OddLevel:
 
     channel: str
     runs: str  #: in words
-    region: Mapping[
-        str, Range
-    ]  #: column -> smallest and largest value; empty if no column of conditions holds the level
+    region: Mapping[str, Range]
+    """By column, smallest and largest value; empty if no column of conditions holds the level."""
     share: float  #: readings of these runs over the simulated ones, less 1
     others: float  #: the same of all other runs; NaN without any
     size: float  #: rms of the misfit by this share [N], [Nm]
@@ -120,11 +119,10 @@ def _groups(points: Points) -> Iterator[tuple[str, dict[str, Range], np.ndarray]
                 {column: (float(values[mask].min()), float(values[mask].max()))},
                 mask,
             )
-    for way, mask in (
-        (w, points.direction == s) for s, w in ((1, "the forward runs"), (-1, "the backward runs"))
-    ):
+    for sign, way in ((1.0, "the forward runs"), (-1.0, "the backward runs")):
+        mask = points.direction == sign
         if 0 < mask.sum() < len(points):
-            yield way, {"direction": (float(points.direction[mask][0]),) * 2}, mask
+            yield way, {"direction": (sign, sign)}, mask
     for names, index in ((points.setups, points.setup), (points.files, points.file)):
         for mask in _parts(index):
             yield f"the runs of {names[index[mask][0]]}", {}, mask

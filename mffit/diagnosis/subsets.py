@@ -52,9 +52,8 @@ class LinearSets:
         }
         state = at.state.with_numbers(at_rest) if at_rest else at.state
         rows, away, first = [problem.whitened(state)], [], 1
-        self._numbers = [
-            ON
-        ]  # by row; each column is a change by one standard deviation of its number's prior
+        # By row; each column is a change by one standard deviation of its number's prior.
+        self._numbers = [ON]
         for effect, groups in problem.columns(state, candidates).items():
             numbers = priors[effect]
             moved = [known.get(n.name, 0.0) for n in numbers]

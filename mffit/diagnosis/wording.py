@@ -23,7 +23,7 @@ from mffit.quantities import CHANNELS, CONDITIONS, column
 from mffit.rig_errors import OF_RUN, error_of, shown, unit_of, words_of
 from mffit.rounding import per_cent, to_uncertainty
 from mffit.suspicion import Misread, Outlier
-from tir.errors import listed
+from tir.errors import begun, listed
 
 TO_DO = {
     "tyre": "use {file}",
@@ -47,7 +47,7 @@ def headline(diagnosis: Diagnosis) -> str:
     warned = "" if other is None else f"Warning: {other.sentence} "
     wrong = next((remark for remark in diagnosis.notes if isinstance(remark, Misread)), None)
     left_out = "" if wrong is None else f"{wrong.file} looks like {wrong.looks} and was left out. "
-    taken_off = "".join(f"{said[:1].upper()}{said[1:]}. " for said in _taken_off(diagnosis))
+    taken_off = "".join(f"{begun(said)}. " for said in _taken_off(diagnosis))
     answer = f"{verdict(diagnosis)}: {_misfit(diagnosis)}.{_suspicions(diagnosis)}"
     return warned + taken_off + left_out + answer
 
@@ -66,7 +66,7 @@ def verdict(diagnosis: Diagnosis) -> str:
         case Answer.UNDECIDED if effects:
             return f"These data cannot tell what is missing; the best explanation is {names}"
         case Answer.UNDECIDED if odd is not None:
-            return f"{odd.said[:1].upper()}{odd.said[1:]}, and no effect stands out"
+            return f"{begun(odd.said)}, and no effect stands out"
         case Answer.UNDECIDED if any(isinstance(one, MoreThanBuild) for one in diagnosis.notes):
             return "Something may be missing: the model misses more than its build left, and no effect stands out"
         case Answer.UNDECIDED:
@@ -77,7 +77,7 @@ def verdict(diagnosis: Diagnosis) -> str:
             return f"Nothing is corrected; {what}, but {but}"
         case Answer.UNKNOWN if odd is not None:
             beside = f" in addition to {names}" if effects else ""
-            return f"{odd.said[:1].upper()}{odd.said[1:]}, which no effect of the library describes{beside}"
+            return f"{begun(odd.said)}, which no effect of the library describes{beside}"
         case Answer.UNKNOWN:
             if diagnosis.suspected:
                 return f"More is missing than effects of the library describe{f', beside {names}' if effects else ''}"

@@ -108,9 +108,8 @@ def design(points: Points, side: str) -> Design:
     pressures_at = [_count(level["pressures"][load == k]) for k in np.unique(load[load >= 0])]
     run: dict[str, float | np.bool_] = {
         **{word: np.any(rows) for word, rows in met.items()},
-        **{word: _count(own) for word, own in level.items()},
+        **{word: _count(own) - (word in CHANGES) for word, own in level.items()},
         "pressure_loads": sum(n > 1 for n in pressures_at),
-        **{word: _count(level[word]) - 1 for word in CHANGES},
         "sideslips": levels.count(points.alpha, levels.SIDESLIP),
         "combined": levels.count(np.abs(points.alpha[driven]), levels.SIDESLIP) - 1 if np.any(driven) else 0,
         "curvature": curved,

@@ -51,6 +51,7 @@ from mffit.suspicion.mounts import undeclared_mount
 from mffit.suspicion.outliers import outliers
 from mffit.suspicion.reversals import turning_sentences
 from tir import Tyre
+from tir.errors import begun
 
 
 def fit(
@@ -135,7 +136,7 @@ def fit(
             *filter(None, [vertical_sentence(radii), alignment_sentence(config, measured)]),
             *others,
             *remarks(config, points, fitted, tyre.values, wide),
-            *([f"{moved[0].upper()}{moved[1:]}."] if moved and not contradicted else []),
+            *([f"{begun(moved)}."] if moved and not contradicted else []),
         ),
         warnings=(
             *([moved] if contradicted else []),

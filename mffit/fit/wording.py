@@ -30,7 +30,7 @@ from mffit.rig_errors import BESIDE, ZEROS, error_of, shown, unit_of, words_of
 from mffit.rounding import ascii_only, number, rounded, to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
 from mffit.suspicion.constants import DIFFERENCE_OF_ANOTHER_TYRE
-from tir.errors import listed
+from tir.errors import begun, listed
 from tir.parameters import BY_NAME
 
 RARE = "the range of usual tyres"
@@ -423,7 +423,7 @@ def remarks(
         zeros_of_rig_sentence(zeros, found) if zeros and not config.rig.on_disc else "",
         held_asymmetries(fitted.held_rig) if config.rig.on_disc else "",
     ]
-    return [f"{text[0].upper()}{text[1:]}." for text in said if text]
+    return [f"{begun(text)}." for text in said if text]
 
 
 def zeros_listed(rig: Mapping[str, tuple[float, float]]) -> str:

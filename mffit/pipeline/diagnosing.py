@@ -16,12 +16,7 @@ from mffit import config as configuration
 from mffit.config import Config
 from mffit.diagnosis import Diagnosis, corrected_points, wording
 from mffit.diagnosis import diagnose as find_effects
-from mffit.diagnosis.notes import (
-    DiagnosisNote,
-    DirectMethodRedone,
-    ModelFittedFirst,
-    ModelOfLastBuild,
-)
+from mffit.diagnosis.notes import DiagnosisNote, DirectMethodRedone, ModelFittedFirst, ModelOfLastBuild
 from mffit.diagnosis.result import WITH_TERMS
 from mffit.diagnosis.search import Asked
 from mffit.diagnosis.strangers import another_tyre

@@ -7,7 +7,7 @@ import numpy as np
 
 from mffit.points import constants
 from mffit.points.points import Points
-from mffit.scatter import rms, robust
+from mffit.scatter import bends, rms, robust
 
 
 class OverNoise(NamedTuple):
@@ -47,6 +47,5 @@ def neighbour_noise(points: Points, values: np.ndarray) -> float:
     NaN if all sweeps are too short.
     """
     sweeps = [own[np.isfinite(own)] for own in (values[rows] for rows in points.rows_of_sweeps.values())]
-    # White noise of variance 1 has third differences of variance 1 + 9 + 9 + 1.
-    differences = [np.diff(x, 3) / np.sqrt(20.0) for x in sweeps if len(x) >= constants.FEWEST_POINTS]
+    differences = [bends(x, 3) for x in sweeps if len(x) >= constants.FEWEST_POINTS]
     return robust(np.concatenate(differences)) if differences else float("nan")

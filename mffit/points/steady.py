@@ -5,7 +5,6 @@ remove transients and to drop plateaus that never settle.
 """
 
 import itertools
-import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -15,7 +14,7 @@ import scipy  # its parts are loaded on first use
 from mffit.constants import FALSE_ALARM, MOST, STRAIGHT, UPRIGHT
 from mffit.points import constants
 from mffit.points.stretch import MOVE, SWEEP, Stretch, runs
-from mffit.scatter import beyond, finite_median, robust
+from mffit.scatter import bends, beyond, finite_median, robust
 
 CONDITIONS = ("Fz", "p", "V")
 STEP = {
@@ -388,4 +387,4 @@ def _noise(values: np.ndarray) -> float:
 
     First ones would take a movement for noise where few samples are recorded of it.
     """
-    return robust(np.diff(values, 2)) / math.sqrt(6.0) if len(values) > 2 else 0.0
+    return robust(bends(values, 2)) if len(values) > 2 else 0.0

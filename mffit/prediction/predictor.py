@@ -345,12 +345,9 @@ class Predictor(ReadOnlyArrays):
         for name, own in ((name, own) for name, own in self.channels.items() if own.is_proven):
             settings, best = _stated(points, own.smooth.inputs), column(name, "best")
             never = own.combinations.at(settings) * found[best].to_numpy() ** 2
-            matters = 2.0 * never > found[f"u_{best}"].to_numpy() ** 2
-            apart = own.combinations.untested(settings)
-            out = [
-                known or (names if here else ())
-                for known, names, here in zip(out, apart, matters, strict=True)
-            ]
+            rows = np.flatnonzero(2.0 * never > found[f"u_{best}"].to_numpy() ** 2)
+            for row, names in zip(rows.tolist(), own.combinations.untested(settings[rows]), strict=True):
+                out[row] = out[row] or names
         return out
 
     def missed(self, name: str, points: Points) -> np.ndarray:

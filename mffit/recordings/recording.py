@@ -21,7 +21,7 @@ from mffit.recordings.by_unit import KINDS, in_unit_of, named_alike
 from mffit.recordings.guess import NO_COLUMNS, ColumnChoice, corrected, guesses
 from mffit.recordings.tyre_constants import StatedByFile, stated_by
 from mffit.recordings.unstated import Guess, Remark
-from mffit.scatter import robust
+from mffit.scatter import bends, robust
 from mffit.sheets import file_of
 from mffit.sweeps import formats
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel, unknown_channel
@@ -92,10 +92,9 @@ def recordings_of(
 
 
 def with_shared_units(recordings: Sequence[SniffedRecording]) -> tuple[SniffedRecording, ...]:
-    """The recordings, with angles of which no file states the unit in that of the recording that has the largest.
+    """The recordings; an angle that is only noise, and whose unit no file states, has the unit of its largest readings elsewhere.
 
-    One rig writes a heading in one unit, and an angle that is held at zero is only noise, which shows none. Other angles keep
-    their own.
+    One rig writes a heading in one unit, and an angle that is held at zero shows none.
     """
     known: dict[str, tuple[float, str, Path]] = {}
     for recording in recordings:
@@ -107,10 +106,11 @@ def with_shared_units(recordings: Sequence[SniffedRecording]) -> tuple[SniffedRe
 
     def shared(guess: Guess, path: Path) -> Guess:
         _, unit, other = known[guess.heading]
+        if guess.unit == unit:
+            return guess
         values = numbers(formats.read(path).column(guess.heading))
-        # of white noise, third differences have a variance of 20
-        noise = robust(np.diff(values[np.isfinite(values)], 3)) / np.sqrt(20.0)
-        if guess.unit == unit or max(-guess.lower, guess.upper) > CERTAIN_SIGMA * noise:
+        noise = robust(bends(values[np.isfinite(values)], 3))
+        if max(-guess.lower, guess.upper) > CERTAIN_SIGMA * noise:
             return guess
         why = f"{guess.lower:.3g} to {guess.upper:.3g} taken in {unit}, like {guess.heading} of {other.name}"
         return guess._replace(unit=unit, why=why)

@@ -12,7 +12,7 @@ from mffit.results import BuildResult
 from mffit.rounding import AtLeast, number, stated, times
 from mffit.tested import NO_FX, lacks_fx
 from tir import Quantity
-from tir.errors import listed
+from tir.errors import begun, listed
 
 JUDGED = {"distrusted": "NOT TO BE TRUSTED", "doubted": "in doubt", "sound": "sound"}
 FOR = {
@@ -124,7 +124,7 @@ def _headline(
 ) -> Headline:
     """A number with a ``note``; ``loads`` are its own and the nominal one."""
     own, nominal = (f"at {number(load, 0)} N" for load in loads)
-    name = f"{known.word[0].upper()}{known.word[1:]} {known.ascii}"
+    name = f"{begun(known.word)} {known.ascii}"
     where = "; ".join(filter(None, (reached, own if own != nominal else "")))
     return Headline(
         name, stated(value, known.unit_behind), "; ".join(filter(None, (reached, f"{note} {own}"))), where

@@ -22,7 +22,7 @@ from mffit.points import Points
 from mffit.points.constants import UNLIKE_SHARE
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
-from mffit.scatter import EFFICIENCY, rms, usual_size
+from mffit.scatter import EFFICIENCY, bends, rms, usual_size
 from mffit.suspicion import constants
 from mffit.suspicion.groups import Group, alike, confirmed_by_others, groups
 from mffit.suspicion.rereadings import Away, Errors, Mistake, certain_mistakes, explaining, explanation, moved
@@ -62,9 +62,8 @@ class Error(NamedTuple):
     share: float  #: rms error less its uncertainty, as a share of the channel's usual size at this load
     chance: float  #: probability of such an error for a sound sweep
     vague: float  #: standard uncertainty of the prediction, noise included, as a share of the usual size
-    usual: float = (
-        0.0  #: probability of such an error if the formula misses this sweep as it misses those of its kind
-    )
+    usual: float = 0.0
+    """Probability of such an error if the formula misses this sweep as it misses those of its kind."""
 
     @property
     def facts(self) -> dict[str, Any]:
@@ -263,12 +262,11 @@ def _beyond_noise(found: LeftOutReadings, noise: float) -> float:
 
 def _scatters(found: LeftOutReadings, noise: float) -> bool:
     """Whether a prediction's errors differ between neighbouring readings by far more than the noise, which no formula makes."""
-    bends = np.diff(found.error, 2) / (math.sqrt(6.0) * noise)
-    own = bends[without_worst(np.abs(bends))]
-    far = rms(own) > constants.DISTRUSTED_MISFIT
-    return bool(
-        far and chdtrc(len(own) / 2.0, own @ own / 2.0) < ndtr(-CERTAIN_SIGMA)
-    )  # neighbours share readings
+    away = bends(found.error, 2) / noise
+    own = away[without_worst(np.abs(away))]
+    # Neighbouring differences share readings, so only half of them count.
+    chance = chdtrc(len(own) / 2.0, own @ own / 2.0)
+    return bool(rms(own) > constants.DISTRUSTED_MISFIT and chance < ndtr(-CERTAIN_SIGMA))
 
 
 def _usual(errors: Sequence[float]) -> float:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from mffit.quantities import MODEL
 from tir import Tyre
 from tir.codegen.program import INPUTS
+from tir.errors import begun
 from tir.units import KINDS
 
 
@@ -31,7 +32,7 @@ class ViewerPanel:
     def word(self) -> str:
         """The heading."""
         word = self.name or MODEL[self.y].word
-        return word[0].upper() + word[1:]
+        return begun(word)
 
 
 FAN = (-12.0, -8.0, -4.0, -2.0, 2.0, 4.0, 8.0, 12.0)
