@@ -87,11 +87,10 @@ def _selected(
     """The selected effects, in competition with unnamed structure, without those of low certainty."""
     problem, chosen = select(given, candidates, places)
     bumps = bump_scan(problem.points, problem.noise, problem.structure.allowed)
-    found = Explanation(problem, chosen, tuple(candidates), bumps.best(chosen), bumps, refined=chosen)
-    while found.chosen.effects:
-        certainty = {effect: found.certainty(effect) for effect in found.chosen.effects}
-        least = min(certainty, key=lambda effect: certainty[effect])
-        if certainty[least] >= constants.LEAST_CERTAINTY:
-            break
-        found = found.only(found.chosen.others(least))
+    best = bumps.best(chosen)
+    found = Explanation(problem, chosen, tuple(candidates), best, bumps, refined=chosen).weighed()
+    while min(found.certainty, default=1.0) < constants.LEAST_CERTAINTY:
+        least = chosen.effects[found.certainty.index(min(found.certainty))]
+        found = found.only(chosen.others(least)).weighed()
+        chosen = found.chosen
     return found

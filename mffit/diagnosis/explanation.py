@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,14 @@ from mffit.numbers import Numbers
 from tir.frozen import ReadOnlyArrays
 
 
+class Place(NamedTuple):
+    """The place of an effect among the others, compared with the best unnamed structure in it."""
+
+    without: Hypothesis  #: the other effects, refitted
+    against: float  #: log odds of the effect over unnamed structure, whatever remains beside it
+    share: float  #: share of the misfit that the effect explains
+
+
 @dataclass(frozen=True, slots=True)
 class Explanation(ReadOnlyArrays):
     """Effects, unnamed structure, and the noise assumed for them."""
@@ -37,6 +46,7 @@ class Explanation(ReadOnlyArrays):
     freed: Numbers = EXACT  #: prior of these numbers
     weights: Noise | None = None  #: noise of their estimate; None before it
     strained: bool = False  #: whether the coefficients of a build would have to move further than it explains
+    places: tuple[Place, ...] = ()  #: of each chosen effect, once they are weighed
     further: Contest | None = None  #: all candidates in addition to the chosen effects
     contests: tuple[Contest, ...] = ()  #: for each chosen effect, all candidates in its place
     imitated: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -69,23 +79,20 @@ class Explanation(ReadOnlyArrays):
         """
         return self.problem.seen_through(self.weights or self.independent)
 
-    def choosing(self, chosen: Hypothesis) -> Explanation:
-        """The explanation with other effects, without estimated coefficients."""
-        best = self.bumps.best(chosen)
-        return replace(self, chosen=chosen, refined=chosen, bump=best, contests=(), weights=None)
-
     def only(self, effects: tuple[Effect, ...]) -> Explanation:
-        """The explanation with some of its effects only, refitted."""
+        """The explanation with some of its effects only, refitted, without estimated coefficients."""
         problem, chosen = self.problem.with_structure_of(refitted(self.problem, self.chosen, effects))
-        return replace(self, problem=problem, bumps=self._bumps_in(problem)).choosing(chosen)
+        bumps = self._bumps_in(problem)
+        new = replace(self, problem=problem, bumps=bumps, chosen=chosen, bump=bumps.best(chosen))
+        return replace(new, refined=chosen, places=(), contests=(), weights=None)
 
     def contested(self) -> Explanation:
         """The explanation with all candidates tried in addition to the chosen effects, and in the place of each."""
         chosen, problem = self.chosen, self.problem
-        without = [refitted(problem, chosen, chosen.others(effect)) for effect in chosen.effects]
-        all_chosen = chosen if chosen.effects else problem.null
-        further, *contests = (contest(problem, one, self.candidates) for one in (all_chosen, *without))
-        return replace(self, further=further, contests=tuple(contests))
+        places = self.places or self.weighed().places
+        befores = (chosen if chosen.effects else problem.null, *(place.without for place in places))
+        further, *contests = (contest(problem, one, self.candidates) for one in befores)
+        return replace(self, places=places, further=further, contests=tuple(contests))
 
     def with_coefficients(self, inexact: Numbers) -> Explanation:
         """The explanation with all inexact coefficients estimated together with the effects: there it is linearised again."""
@@ -94,12 +101,18 @@ class Explanation(ReadOnlyArrays):
     def withdrawn(self) -> Explanation:
         """The explanation without effects and repair; the unnamed structure is still that found with the effects."""
         null = replace(self.problem.null, smooth=self.smooth)
-        return replace(self, chosen=null, refined=null, coefficients={}, freed=EXACT)
+        return replace(self, chosen=null, refined=null, coefficients={}, freed=EXACT, places=())
 
-    def certainty(self, effect: Effect) -> float:
-        """Probability of an effect against the best unnamed structure in its place, whatever remains beside it."""
-        against, _ = self._weighed(effect)
-        return 1.0 / (1.0 + math.exp(-against))
+    def weighed(self) -> Explanation:
+        """The explanation with every effect compared with the best unnamed structure in its place."""
+        effects = self.chosen.effects
+        left = self.left(self.chosen) if effects else 0.0
+        return replace(self, places=tuple(self._place(effect, left) for effect in effects))
+
+    @property
+    def certainty(self) -> list[float]:
+        """Probability of each effect against the best unnamed structure in its place, whatever remains beside it."""
+        return [1.0 / (1.0 + math.exp(-place.against)) for place in self.places]
 
     def confidence(self, effect: Effect) -> float:
         """The certainty, reduced by the probability that the effect only imitates a cause outside the library.
@@ -107,26 +120,22 @@ class Explanation(ReadOnlyArrays):
         Unnamed structure shows that there is such a cause. The probability of imitation follows from a comparison: how well do
         other effects imitate each effect of the library if that one is removed?
         """
-        against, share = self._weighed(effect)
-        outside = self.bump.found or self.smooth.found
-        acts = is_no_imitation(share, self.imitated) if outside else share
-        return acts / (1.0 + math.exp(-against))
+        k = self.chosen.effects.index(effect)
+        outside, share = self.bump.found or self.smooth.found, self.places[k].share
+        return (is_no_imitation(share, self.imitated) if outside else share) * self.certainty[k]
 
-    def _weighed(self, effect: Effect) -> tuple[float, float]:
-        """Log odds of an effect against unnamed structure in its place, and the share of the misfit that the effect explains."""
+    def _place(self, effect: Effect, left: float) -> Place:
+        """The place of an effect; ``left`` is what the best bump gains in addition to the chosen effects."""
         chosen = self.chosen
-        if self.contests:
-            without = self.contests[chosen.effects.index(effect)].before
-        else:
-            without = refitted(self.problem, chosen, chosen.others(effect))
-        gain, left = chosen.log_evidence - without.log_evidence, self.left(chosen)
+        without = refitted(self.problem, chosen, chosen.others(effect))
+        gain = chosen.log_evidence - without.log_evidence
         against = gain + left - self.left(without) - math.log(max(len(self.candidates), 1))
         if effect.id in self.problem.noise.offsets:  # autocorrelated errors are another rival
             against = min(against, self.problem.noise.offsets[effect.id].beyond)
         open_ = left + (self.smooth.gain if self.smooth.found else 0.0)
         explains = max(gain, chosen.alone - without.alone, 0.0)
         share = explains / (explains + open_) if open_ else 1.0
-        return float(np.clip(against, -500.0, 500.0)), share
+        return Place(without, float(np.clip(against, -500.0, 500.0)), share)
 
     def left(self, hypothesis: Hypothesis) -> float:
         """Gain of log evidence by the best bump in addition to a hypothesis; at least 0."""
