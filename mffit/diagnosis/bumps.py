@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -44,6 +45,17 @@ class Bump:
         return self.gain > constants.STRUCTURE_EVIDENCE
 
 
+class _Block(NamedTuple):
+    """Some bumps in one channel, whitened without shared changes: the same whatever structure the covariance has."""
+
+    channel: str
+    first: int  #: index of the first bump
+    rows: np.ndarray  #: used rows (m,) of the channel; a bump is 0 in all others
+    shapes: np.ndarray  #: (m, k)
+    power: np.ndarray  #: (k,) sums of squares
+    by_structure: np.ndarray  #: (r, k) parts of them along the axes of the channel's structure
+
+
 @dataclass(frozen=True)
 class BumpScan(ReadOnlyArrays):
     """All bumps that the programme could reveal."""
@@ -53,35 +65,42 @@ class BumpScan(ReadOnlyArrays):
     regions: tuple[Ranges, ...]
     spread: Mapping[str, float]  #: usual amplitude by channel
     allowed: Mapping[str, float]  #: by channel, the amplitude that the model error of the given file explains
+    structure: Mapping[str, np.ndarray]
+    """By channel, the axes (m, r) of the structure that a covariance may have, as in :attr:`Noise.structure`."""
 
     @cached_property
-    def _white(self) -> list[tuple[str, int, np.ndarray, np.ndarray, np.ndarray]]:
-        """Bumps in blocks: channel, index of the first bump, used rows of the channel, whitened shapes, sums of squares.
-
-        A bump is zero in all other rows. The shapes are whitened without shared changes, the sums of squares with them.
-        """
-        out, block = [], 256
+    def _white(self) -> list[_Block]:
+        """All bumps in all channels."""
+        out, size = [], 256
         for channel in self.spread:
-            for first in range(0, len(self.regions), block):
-                rows, shapes = self.noise.whitened_alone(channel, self.bumps[:, first : first + block])
-                power = np.einsum("ij,ij->j", shapes, shapes) - self.noise.directions.power(rows, shapes)
-                out.append((channel, first, rows, shapes.astype(np.float32), power))
+            for first in range(0, len(self.regions), size):
+                rows, shapes = self.noise.whitened_alone(channel, self.bumps[:, first : first + size])
+                axes = self.structure.get(channel, np.zeros((len(rows), 0)))
+                power, along = np.einsum("ij,ij->j", shapes, shapes), (axes.T @ shapes) ** 2
+                out.append(_Block(channel, first, rows, shapes.astype(np.float32), power, along))
         return out
 
-    def best(self, hypothesis: Hypothesis) -> Bump:
-        """The bump that explains most of a hypothesis' residual, with the hypothesis' free numbers projected out."""
+    def best(self, hypothesis: Hypothesis, noise: Noise | None = None) -> Bump:
+        """The bump that explains most of a hypothesis' residual, with the hypothesis' free numbers projected out.
+
+        ``noise`` is the one of the hypothesis, if its shared changes are not those of the scan.
+        """
+        noise = noise or self.noise
         residual = hypothesis.residual
         along = hypothesis.axes.T @ residual
-        # The whitening by shared changes is symmetric, so it is applied to the smaller factor of each product only.
-        axes = self.noise.directions.less(hypothesis.axes).astype(np.float32)
-        left = self.noise.directions.less(residual).astype(np.float32)
+        # The whitening for shared changes is transposed and applied to the smaller factor of each product only.
+        axes = noise.backwards(hypothesis.axes).astype(np.float32)
+        left = noise.backwards(residual).astype(np.float32)
         tried = math.log(max(len(self.regions) * len(self.spread), 1))
         best = Bump("Fy", {}, 0.0, -math.inf)
-        for channel, first, rows, shapes, whole in self._white:
+        for channel, first, rows, shapes, power, by_structure in self._white:
             spread = self.spread[channel]
             inside = (axes[rows].T @ shapes).astype(float)
             score = (shapes.T @ left[rows]).astype(float) - inside.T @ along
-            power = whole - np.einsum("ij,ij->j", inside, inside)
+            power = power - noise.directions_alone.power(rows, shapes) - np.einsum("ij,ij->j", inside, inside)
+            if channel in noise.structure:
+                variance = noise.structure[channel].variance
+                power -= (variance / (1.0 + variance)) @ by_structure
             precision = np.maximum(power, 0.0) + spread**-2.0
             beyond = np.maximum(np.abs(score) - self.allowed.get(channel, 0.0) * precision, 0.0)
             gain = 0.5 * beyond**2 / precision - 0.5 * np.log(precision * spread**2) - tried
@@ -92,10 +111,16 @@ class BumpScan(ReadOnlyArrays):
         return best
 
 
-def bump_scan(points: Points, noise: Noise, allowed: Mapping[str, float] | None = None) -> BumpScan:
+def bump_scan(
+    points: Points,
+    noise: Noise,
+    allowed: Mapping[str, float] | None = None,
+    structure: Mapping[str, np.ndarray] | None = None,
+) -> BumpScan:
     """Bumps over sideslip, camber or slip, in the whole programme or in one bin of another variable.
 
-    ``allowed`` is, by channel, the amplitude over the rms of the readings that needs no cause.
+    ``allowed`` is, by channel, the amplitude over the rms of the readings that needs no cause. The ``structure`` that the noise
+    may have by channel is given by its axes (m, r).
     """
     shapes, regions, cells = [], [], bins(points)
     for column, (widths, others) in SWEPT.items():
@@ -113,7 +138,7 @@ def bump_scan(points: Points, noise: Noise, allowed: Mapping[str, float] | None 
     }
     bumps = np.column_stack(shapes) if shapes else np.empty((len(points), 0), np.float32)
     sizes = {name: part * rms(points.channel(name)) for name, part in (allowed or {}).items()}
-    return BumpScan(noise, bumps, tuple(regions), spread, sizes)
+    return BumpScan(noise, bumps, tuple(regions), spread, sizes, structure or {})
 
 
 def _bells(column: str, points: Points, widths: Sequence[float]) -> Iterator[tuple[Ranges, np.ndarray]]:

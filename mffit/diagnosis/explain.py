@@ -86,7 +86,8 @@ def _selected(
 ) -> Explanation:
     """The selected effects, in competition with unnamed structure, without those of low certainty."""
     problem, chosen = select(given, candidates, places)
-    bumps = bump_scan(problem.points, problem.noise, problem.structure.allowed)
+    structure = {name: of.axes for name, (_, of) in problem.structure.directions.items()}
+    bumps = bump_scan(problem.points, problem.noise, problem.structure.allowed, structure)
     best = bumps.best(chosen)
     found = Explanation(problem, chosen, tuple(candidates), best, bumps, refined=chosen).weighed()
     while min(found.certainty, default=1.0) < constants.LEAST_CERTAINTY:

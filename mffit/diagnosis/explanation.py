@@ -82,9 +82,9 @@ class Explanation(ReadOnlyArrays):
     def only(self, effects: tuple[Effect, ...]) -> Explanation:
         """The explanation with some of its effects only, refitted, without estimated coefficients."""
         problem, chosen = self.problem.with_structure_of(refitted(self.problem, self.chosen, effects))
-        bumps = self._bumps_in(problem)
-        new = replace(self, problem=problem, bumps=bumps, chosen=chosen, bump=bumps.best(chosen))
-        return replace(new, refined=chosen, places=(), contests=(), weights=None)
+        best = self.bumps.best(chosen, problem.noise)
+        new = replace(self, problem=problem, chosen=chosen, bump=best, refined=chosen)
+        return replace(new, places=(), contests=(), weights=None)
 
     def contested(self) -> Explanation:
         """The explanation with all candidates tried in addition to the chosen effects, and in the place of each."""
@@ -140,8 +140,4 @@ class Explanation(ReadOnlyArrays):
     def left(self, hypothesis: Hypothesis) -> float:
         """Gain of log evidence by the best bump in addition to a hypothesis; at least 0."""
         problem, own = self.problem.with_structure_of(hypothesis)
-        return max(self._bumps_in(problem).best(own).gain, 0.0)
-
-    def _bumps_in(self, problem: DiagnosisProblem) -> BumpScan:
-        """The bumps in another covariance of the same readings."""
-        return self.bumps if problem is self.problem else replace(self.bumps, noise=problem.noise)
+        return max(self.bumps.best(own, problem.noise).gain, 0.0)

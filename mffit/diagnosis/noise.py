@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
@@ -76,7 +76,8 @@ class Noise(ReadOnlyArrays):
 
     The readings (c n,) are those of n points in c channels, channel by channel. Their covariance is D M D + S S'. D are the
     standard uncertainties. M is the correlation along chains: ``memory`` to the power of the distance, times 1 less the
-    ``independent`` share. The columns S are changes that several readings share, one standard deviation each.
+    ``independent`` share. The columns S are changes that several readings share, one standard deviation each: those of numbers
+    that act on all channels, and of structure that each channel has of its own.
     """
 
     u: np.ndarray  #: (c n,) standard uncertainty of every reading; inf where missing
@@ -91,6 +92,8 @@ class Noise(ReadOnlyArrays):
     """(c n,) rank in time of every reading within its channel; None without longer chains."""
     weight: np.ndarray | None = None  #: (c n,) weight of each reading, below 1 for outliers; None: all 1
     shared: np.ndarray | None = None  #: (c n, k) changes that readings share, one standard deviation each
+    structure: Mapping[str, Directions] = field(default_factory=dict)
+    """By channel, further such changes of its used readings, whitened for D and M."""
     offsets: Mapping[str, RunOffsets] = field(default_factory=dict)
     """By id of the effect, offsets of runs that compete with autocorrelated errors; empty without autocorrelation."""
 
@@ -153,9 +156,31 @@ class Noise(ReadOnlyArrays):
 
     @cached_property
     def directions(self) -> Directions:
-        """Directions of the shared changes among the used readings that D and M have whitened."""
+        """Directions of the shared changes among the used readings, whitened for D, M and structure."""
         shared = np.zeros((len(self.u), 0)) if self.shared is None else self.shared
-        return Directions.of(self._independent(shared[self.used]))
+        return Directions.of(self._by_channel(Directions.less, self._independent(shared[self.used])))
+
+    @cached_property
+    def directions_alone(self) -> Directions:
+        """The same for products with differences that are whitened for D and M only."""
+        return self.directions._replace(axes=self._by_channel(Directions.less, self.directions.axes))
+
+    @property
+    def half_log_determinant(self) -> float:
+        """Half the log determinant of the covariance of all that readings share, relative to the errors alone."""
+        return sum(of.half_log_determinant for of in (self.directions, *self.structure.values()))
+
+    def _by_channel(
+        self, change: Callable[[Directions, np.ndarray], np.ndarray], z: np.ndarray
+    ) -> np.ndarray:
+        """Rows (m,) or (m, k), those of every channel with structure changed by its directions."""
+        if not self.structure:
+            return z
+        out = z.copy()
+        for name, (own, _) in zip(self.scatter, self._errors, strict=True):
+            if name in self.structure:
+                out[own] = change(self.structure[name], z[own])
+        return out
 
     def _independent(self, x: np.ndarray) -> np.ndarray:
         """Differences of used readings (m,) or (m, k), whitened for D and M only."""
@@ -167,7 +192,15 @@ class Noise(ReadOnlyArrays):
 
     def whiten(self, x: np.ndarray) -> np.ndarray:
         """Whitened differences (m,) or (m, k) of the used readings, from readings (c n,) or (c n, k)."""
-        return self.directions.less(self._independent(x[self.used]))
+        return self.directions.less(self._by_channel(Directions.less, self._independent(x[self.used])))
+
+    def unshared(self, white: np.ndarray) -> np.ndarray:
+        """Whitened differences (m,) or (m, k) as if readings shared no changes: the inverse of that part of the whitening."""
+        return self._by_channel(Directions.more, self.directions.more(white))
+
+    def backwards(self, white: np.ndarray) -> np.ndarray:
+        """The transpose of the whitening for shared changes, applied to whitened differences (m,) or (m, k)."""
+        return self._by_channel(Directions.less, self.directions.less(white))
 
     def whitened_alone(self, channel: str, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Positions (m,) of a channel's readings among the used ones, and its differences (n, k) whitened for D and M only."""
@@ -216,7 +249,7 @@ class Noise(ReadOnlyArrays):
 
     def alone(self) -> Noise:
         """The scatter of the readings without shared changes."""
-        return replace(self, shared=None)
+        return replace(self, shared=None, structure={})
 
     def sharing(self, *columns: np.ndarray | None) -> Noise:
         """The noise with these shared changes (c n, k) only."""

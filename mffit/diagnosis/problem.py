@@ -20,7 +20,7 @@ from mffit.effects import Effect, Free
 from mffit.fit.constants import REFIT_STEPS, STAGE_TOLERANCE
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve, touches
 from mffit.left_out import moved_without
-from mffit.linearised.gaussian import Informed
+from mffit.linearised.gaussian import Directions, Informed
 from mffit.numbers import Numbers
 from mffit.points import Points
 from mffit.rig import Simulation
@@ -86,7 +86,12 @@ class DiagnosisProblem:
         key = frozenset(amplitude.items())
         if key not in kept:
             other = copy(self)
-            other.amplitude, other.noise = amplitude, self.structure.noise(amplitude)
+            sized = {
+                name: Directions(of.axes, amplitude[name] ** 2 * of.variance)
+                for name, (_, of) in self.structure.directions.items()
+                if amplitude.get(name)
+            }
+            other.amplitude, other.noise = amplitude, replace(self.structure.scatter, structure=sized)
             vars(other).pop("null", None)  # that of the other amplitude
             while len(kept) >= constants.MOST_AMPLITUDES_KEPT:
                 del kept[next(iter(kept))]
@@ -254,8 +259,7 @@ class DiagnosisProblem:
         model, now = self.structure.beside(columns, residual), self.amplitude
         found, alone = model.best(), fitted.log_evidence
         if now or found.expected:
-            alone -= self.noise.directions.half_log_determinant
-            alone += self.structure.scatter.directions.half_log_determinant
+            alone -= self.noise.half_log_determinant - self.structure.scatter.half_log_determinant
             alone -= model.evidence(now) + model.improbable(now) - model.evidence(found.expected)
         value = float(np.logaddexp(alone, alone + found.gain - constants.STRUCTURE_EVIDENCE))
         return replace(fitted, log_evidence=value, smooth=found, alone=alone)
@@ -268,7 +272,7 @@ class DiagnosisProblem:
         away = np.array([(fitted.numbers[n.name] - n.expected) / n.spread for n in numbers])
         columns = not_too_steep(fitted.jacobian * np.array([n.spread for n in numbers]))
         at_centre = fitted.residual - columns @ away
-        found = self.noise.directions.more(np.column_stack([at_centre, columns]))
+        found = self.noise.unshared(np.column_stack([at_centre, columns]))
         return found[:, 1:], found[:, 0]
 
     def _standard_errors(self, found: Solution, unit: np.ndarray) -> dict[str, float]:
