@@ -51,7 +51,7 @@ class LinearSets:
             n.name: n.expected for numbers in priors.values() for n in numbers if known.get(n.name) == 0.0
         }
         state = at.state.with_numbers(at_rest) if at_rest else at.state
-        rows, away, first = [problem.whitened(state)], [], 1
+        changes, away, first = list[np.ndarray](), list[float](), 1
         # By row; each column is a change by one standard deviation of its number's prior.
         self._numbers = [ON]
         for effect, groups in problem.columns(state, candidates).items():
@@ -65,11 +65,13 @@ class LinearSets:
                 end = first + columns.shape[1]
                 self.members.append(Member(effect, range(first, end)))
                 self._numbers.extend(numbers or (ON,))
-                rows.append(not_too_steep(problem.noise.whiten(columns)))
+                changes.append(columns)
                 away.extend(moved or [0.0])
                 first = end
-        whole = np.column_stack(rows)
-        whole[:, 0] += whole[:, 1:] @ np.array(away)
+        whole = problem.whitened(state)[:, None]
+        if changes:
+            white = not_too_steep(problem.noise.whiten(np.hstack(changes)))  # faster than one by one
+            whole = np.hstack([whole + white @ np.array(away)[:, None], white])
         self._products = whole.T @ whole
         self._expected, self._spread, self._lower, self._upper = np.array(
             [(n.expected, n.spread, n.lower, n.upper) for n in self._numbers]

@@ -13,6 +13,7 @@ from mffit.diagnosis.needs import possible, without
 from mffit.diagnosis.noise import Noise, Scatter
 from mffit.effects import CATALOG
 from mffit.linearised.chained import Memory
+from mffit.linearised.gaussian import Directions
 from mffit.points import Points, make_points
 from mffit.rig import Simulation
 from mffit.rig_errors import T_REF
@@ -29,7 +30,8 @@ def _points(n: int = 120) -> Points:
     )  # fmt: skip
 
 
-def test_the_best_bump_is_that_of_whole_whitened_shapes():
+@pytest.mark.parametrize("structured", [False, True])
+def test_the_best_bump_is_that_of_whole_whitened_shapes(structured):
     points, rng = _points(), np.random.default_rng(5)
     n = len(points)
     u = np.repeat([5.0, 0.6], n)
@@ -43,8 +45,11 @@ def test_the_best_bump_is_that_of_whole_whitened_shapes():
     ).sharing(rng.normal(0.0, 3.0, (2 * n, 6)))
     axes = np.linalg.qr(rng.normal(size=(2 * n - 1, 3)))[0]
     residual = rng.normal(0.0, 2.0, 2 * n - 1)
-    scan = bump_scan(points, noise)
-    found = scan.best(SimpleNamespace(axes=axes, residual=residual))
+    inside = {name: np.linalg.qr(rng.normal(size=(n - (name == "Fy"), 4)))[0] for name in noise.channels}
+    scan = bump_scan(points, noise, structure=inside)
+    if structured:  # one scan serves whatever structure the covariance has
+        noise = replace(noise, structure={"Mz": Directions(inside["Mz"], np.array([0.1, 1.0, 10.0, 1e3]))})
+    found = scan.best(SimpleNamespace(axes=axes, residual=residual), noise)
     gains = []
     for name in noise.channels:
         nothing = np.zeros(scan.bumps.shape)

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from scipy.linalg import block_diag
 from scipy.stats import multivariate_normal
+from small_programme import TYRE, programme, read
 
 from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.smooth import SmoothStructure
+from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.smooth import Smooth, SmoothStructure
+from mffit.rig import Simulation
 
 N = 30
 BASIS = block_diag(*np.random.default_rng(1).normal(size=(2, N, 5)))
@@ -48,14 +53,19 @@ def test_its_evidence_is_the_density_of_the_readings(noise):
 
 
 def test_structure_in_the_covariance_is_whitened_like_any_shared_change(noise):
-    beside = SmoothStructure(noise, BASIS).noise({"Mz": 0.7})
+    points = read(programme().select(np.arange(N)))
+    problem = DiagnosisProblem(points, Simulation.of(TYRE), noise, beside=BASIS)
+    beside = problem.at_amplitude(Smooth({"Mz": 0.7}, math.inf)).noise
     white = beside.whiten(np.eye(2 * N))
     whole = covariance(noise, np.zeros((2 * N, 0)), 0.0, 0.7)
     assert white @ whole @ white.T == pytest.approx(np.eye(2 * N), abs=1e-9)
     without = covariance(noise, np.zeros((2 * N, 0)), 0.0, 0.0)
     logs = [np.linalg.slogdet(one)[1] for one in (whole, without)]
-    more = beside.directions.half_log_determinant - noise.directions.half_log_determinant
+    more = beside.half_log_determinant - noise.half_log_determinant
     assert more == pytest.approx(0.5 * (logs[0] - logs[1]))
+    alone = np.diag(1.0 / noise.u)
+    assert beside.unshared(white) == pytest.approx(alone)
+    assert beside.backwards(white) == pytest.approx(np.diag(noise.u) @ np.linalg.inv(whole))
 
 
 @pytest.mark.parametrize(("size", "found"), [(0.0, False), (0.5, True)])
