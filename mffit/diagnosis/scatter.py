@@ -148,10 +148,9 @@ class ScatterOfChannel(ReadOnlyArrays):
             span: [p[p >= 0] for p in (place[c] for c in found) if np.any(p >= 0)]
             for span, found in self.chains.items()
         }
-        columns, noise = (
-            {name: term[rows] for name, term in terms.items()}
-            for terms in (self.terms.columns, self.terms.noise)
-        )
+        noise = {name: part[rows] for name, part in self.terms.noise.items()}
+        u = np.sqrt(noise["scale"])
+        columns = {name: _condensed(term[rows], u) for name, term in self.terms.columns.items()}
         terms = Chained(self.terms.residual[rows], columns, noise, (), self.terms.weight[rows])
         return ScatterOfChannel(terms, chains, self.sweep[rows])
 
@@ -267,23 +266,22 @@ def _of_channel(
     plain, needed = channel, constants.SURPRISING_LOG_ODDS + math.log(max(len(runs), 1))
     found, channel, tails = _weighted(channel)
     offsets: dict[str, RunOffsets] = {}
-    span = found[0].by.span
-    if span is None:
+    span, runs = found[0].by.span, {name: columns for name, columns in runs.items() if columns.shape[1]}
+    if span is None or not runs:
         return found[0], channel, tails, offsets
     # The weights of outliers follow from a description without offsets, so offsets must be likelier without weights, too.
     weighing = [plain] if math.isinf(tails) else [plain, channel]
     rivals = [(one, _descriptions(one, only=span)) for one in weighing]
     most, best = needed, None
     for effect, columns in runs.items():
-        if columns.shape[1]:
-            odds, size = math.inf, 0.0
-            for one, alone in rivals:
-                beside = _descriptions(one.plus("offsets", columns), only=span)
-                size = beside[0].size("offsets")
-                odds = min(odds, _log_sum(beside) - _log_sum(alone))
-            offsets[effect] = RunOffsets(odds, needed, size, frozenset())
-            if odds > most:
-                most, best = odds, columns
+        odds, size = math.inf, 0.0
+        for one, alone in rivals:
+            beside = _descriptions(one.plus("offsets", columns), only=span)
+            size = beside[0].size("offsets")
+            odds = min(odds, _log_sum(beside) - _log_sum(alone))
+        offsets[effect] = RunOffsets(odds, needed, size, frozenset())
+        if odds > most:
+            most, best = odds, columns
     if best is not None:
         found, channel, tails = _weighted(plain.plus("offsets", best), only=span)
     return found[0], channel, tails, offsets
