@@ -133,3 +133,9 @@ SHARES_OF_A_BUILD = Series(
     "Usual shares of the steps of a build in its time, for the share done and the time left that a terminal shows.",
     "the samples and two measured flat-track runs, 5 to 57 s: fitting takes 8 to 41 %, writing 25 to 48 %",
 )
+SHARES_OF_A_DIAGNOSIS = Series(
+    (0.05, 0.02, 0.09, 0.17, 0.19, 0.08, 0.05, 0.06, 0.06, 0.01, 0.08, 0.07, 0.07),
+    "-",
+    "The same of a diagnosis.",
+    "two campaigns on a disc and three moving recordings, 4 to 100 s: choosing takes 9 to 36 %, weighing 2 to 24 %",
+)

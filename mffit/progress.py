@@ -1,10 +1,10 @@
-"""Progress messages of long runs, and the share of a build that is done."""
+"""Progress messages of long runs, and the share of a build or a diagnosis that is done."""
 
 import math
 import time
 from collections.abc import Callable
 
-from mffit.constants import SHARES_OF_A_BUILD
+from mffit.constants import SHARES_OF_A_BUILD, SHARES_OF_A_DIAGNOSIS
 
 Progress = Callable[[str], None]
 """Called with a short sentence at the beginning of every step."""
@@ -19,6 +19,25 @@ JUDGING = "judging what the fit leaves"
 WRITING = "writing the"
 STEPS = (READING, MEASURING, FITTING, FITTING_AGAIN, PREDICTING, DERIVING, JUDGING, WRITING)
 """How the sentences of a build begin, in their order."""
+COMPARING = "comparing simulation and measurement"
+FITTING_ALL = "fitting all effects at once"
+NOISE = "estimating the noise of the readings"
+CHOOSING = "choosing effects"
+WEIGHING = "weighing them against structure without a name"
+CHOOSING_AGAIN = "choosing again"
+WEIGHING_AGAIN = "weighing again"
+SIZING = "estimating sizes and coefficients"
+LEAVING_OUT = "checking on left-out sweeps"
+CONTESTING = "trying all effects in the place of each"
+CORRECTING = "correcting model and readings"
+WRITING_DIAGNOSIS = "writing the diagnosis"
+STEPS_OF_A_DIAGNOSIS = (
+    *(READING, COMPARING, FITTING_ALL, NOISE, CHOOSING, WEIGHING, CHOOSING_AGAIN, WEIGHING_AGAIN),
+    *(SIZING, LEAVING_OUT, CONTESTING, CORRECTING, WRITING_DIAGNOSIS),
+)
+"""Those of a diagnosis."""
+RUNS = ((STEPS_OF_A_DIAGNOSIS, SHARES_OF_A_DIAGNOSIS), (STEPS, SHARES_OF_A_BUILD))
+"""Steps of every kind of run, and their shares."""
 
 
 def silent(sentence: str) -> None:
@@ -28,25 +47,28 @@ def silent(sentence: str) -> None:
 def remaining(
     sentence: str, seconds: float, since: float = 0.0, *, writes: bool = True
 ) -> tuple[float | None, float | None]:
-    """Share of a build that is done in a step, and the time that it still takes [s].
+    """Share of a build or a diagnosis that is done in a step, and the time that it still takes [s].
 
     Parameters
     ----------
-    sentence : of the step; both are None for a sentence outside the steps of a build
-    seconds : from the beginning of the build to that of the step [s]
+    sentence : of the step; both are None for a sentence outside their steps
+    seconds : from the beginning of the run to that of the step [s]
     since : from the beginning of the step [s]: the share grows as fast as it did before, up to that of the next step; the time
-        left is None until the fit, the longest step, has shown how fast it is
-    writes : whether the build ends with the step of writing
+        left is None until the longest step has shown how fast it is
+    writes : whether the run ends with the step of writing
     """
-    at = next((k for k, step in enumerate(STEPS) if sentence.startswith(step)), None)
-    if at is None:
+    found = [
+        (shares, k) for steps, shares in RUNS for k, step in enumerate(steps) if sentence.startswith(step)
+    ]
+    if not found:
         return None, None
-    whole = 1.0 if writes else 1.0 - SHARES_OF_A_BUILD[-1]
-    done, own = sum(SHARES_OF_A_BUILD[:at]) / whole, SHARES_OF_A_BUILD[at] / whole
+    shares, at = found[0]
+    whole = 1.0 if writes else 1.0 - shares[-1]
+    done, own = sum(shares[:at]) / whole, shares[at] / whole
     if not done or not seconds:
         return done, None
     usual = done / seconds
-    left = (1.0 - done) / usual - since if at > STEPS.index(FITTING) else None
+    left = (1.0 - done) / usual - since if at > shares.index(max(shares)) else None
     return done + min(own, usual * since), left
 
 

@@ -40,7 +40,7 @@ from mffit.diagnosis.validation import raw_gap
 from mffit.effects import Effect
 from mffit.fit.plan import channels_of
 from mffit.points import Points
-from mffit.progress import Progress, silent
+from mffit.progress import COMPARING, CONTESTING, CORRECTING, LEAVING_OUT, Progress, silent
 from mffit.rig import Simulation
 from mffit.rig_errors import T_REF
 from mffit.suspicion.misread import Misread, misread
@@ -57,7 +57,7 @@ def diagnose(
 
     Raises InputError if points and model cannot belong together, or there are too few points.
     """
-    progress("comparing simulation and measurement")
+    progress(COMPARING)
     start, channels = _simulation(points, tyre, config, asked.rig), channels_of(points)
     refuse_strangers(points, tyre, start, channels)
     wrong = misread(points, start, axis_signs(config), channels) if asked.culprits else None
@@ -65,21 +65,23 @@ def diagnose(
     if wrong is not None:
         kept = np.array([name != wrong.sweep for name in points.sweep_names])[points.sweep]
     examined, origin = with_uncertainties(by_condition(points.select(kept)), start, channels)
-    progress("trying every effect")
     search = _search(examined, stated_noise(examined, origin, channels), start, tyre, config, asked)
+    search = replace(search, progress=progress)
     found = explain(search)
     beyond = hardly_this_tyre(found)
     if wrong is not None and beyond:  # no sweep is wrong for a model of another tyre
         return diagnose(points, tyre, config, replace(asked, culprits=False), progress)
     if beyond:
         found = found.withdrawn()
-    progress("checking on left-out sweeps")
+    progress(LEAVING_OUT)
     given = DiagnosisProblem(examined, start, found.independent)
     found, validation, refused = checked(found, given, search)
+    progress(CONTESTING)
     found = found.contested()
     rest = (*beyond, *remaining(found))
     others = not_accepted(found)
     confirmed = Confirmed(found, given, named_effects(config, found, given, others), others, rest)
+    progress(CORRECTING)
     done = repair(confirmed, validation, search)
     notes = _notes(search, confirmed, wrong, done, refused)
     before = raw_gap(points if asked.as_read is None else asked.as_read, start, kept, found.scatter)

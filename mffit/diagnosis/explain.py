@@ -19,6 +19,15 @@ from mffit.diagnosis.scatter import beyond_memory, learned_noise
 from mffit.diagnosis.search import Search
 from mffit.diagnosis.selection import select
 from mffit.effects import Effect
+from mffit.progress import (
+    CHOOSING,
+    CHOOSING_AGAIN,
+    FITTING_ALL,
+    NOISE,
+    SIZING,
+    WEIGHING,
+    WEIGHING_AGAIN,
+)
 from mffit.rig import Simulation
 from mffit.scatter import rms
 
@@ -36,6 +45,7 @@ def explain(search: Search) -> Explanation:
         found = _selected_around(search, found.refined.state, noise, found.chosen)
     if found.chosen.effects and (found.bump.found or found.smooth.found):
         found = replace(found, imitated=imitations(found.problem, search.candidates))
+    search.progress(SIZING)
     return estimated(found, search)
 
 
@@ -48,6 +58,7 @@ def _all_at_once(search: Search) -> tuple[Simulation, Noise]:
     alike = [e for e in search.candidates if not e.differs_by_run]  # the others are rivals of the noise
     state, noise = start, search.stated
     read: np.ndarray | None = None
+    search.progress(FITTING_ALL)
     for _ in range(constants.MOST_EXPLANATION_ROUNDS):
         shared = search.shared(noise, state)
         at: dict[str, float] = (
@@ -63,6 +74,8 @@ def _all_at_once(search: Search) -> tuple[Simulation, Noise]:
             moved = rms(((read - before) / noise.u)[noise.used])
             if moved < 1.0:  # over the noise: it stays the same
                 break
+        if before is None:
+            search.progress(NOISE)
         noise = learned_noise(search, state)
     return state, noise
 
@@ -71,6 +84,7 @@ def _selected_around(
     search: Search, state: Simulation, noise: Noise, known: Hypothesis | None = None
 ) -> Explanation:
     """The effects selected from nothing and from all effects at once, or from a ``known`` set; coefficients estimated."""
+    search.progress(CHOOSING if known is None else CHOOSING_AGAIN)
     visible = beyond_memory(noise, search.candidates)
     problem = search.problem(state, noise, search.candidates if known is None else known.effects)
     places = [problem.null]
@@ -78,14 +92,13 @@ def _selected_around(
         places.append(problem.fit_together(visible))
     else:
         places.append(refitted(problem, known, [e for e in visible if e.id in known.ids]))
-    return _selected(problem, visible, places).with_coefficients(search.inexact)
+    problem, chosen = select(problem, visible, places)
+    search.progress(WEIGHING if known is None else WEIGHING_AGAIN)
+    return _certain(problem, chosen, visible).with_coefficients(search.inexact)
 
 
-def _selected(
-    given: DiagnosisProblem, candidates: Sequence[Effect], places: Sequence[Hypothesis]
-) -> Explanation:
-    """The selected effects, in competition with unnamed structure, without those of low certainty."""
-    problem, chosen = select(given, candidates, places)
+def _certain(problem: DiagnosisProblem, chosen: Hypothesis, candidates: Sequence[Effect]) -> Explanation:
+    """The chosen effects in competition with unnamed structure, without those of low certainty."""
     structure = {name: of.axes for name, (_, of) in problem.structure.directions.items()}
     bumps = bump_scan(problem.points, problem.noise, problem.structure.allowed, structure)
     best = bumps.best(chosen)

@@ -19,6 +19,7 @@ from mffit.effects import CATALOG, Effect
 from mffit.linearised.constants import DIVISIONS_OF_A_SWEEP
 from mffit.numbers import Numbers
 from mffit.points import Points
+from mffit.progress import Progress, silent
 from mffit.rig import Simulation
 from mffit.scatter import rms
 from tir import Tyre
@@ -63,6 +64,7 @@ class Search:
     inexact: Numbers
     declared: Mapping[str, tuple[float, float]]
     """Value and standard uncertainty of each declared rig error."""
+    progress: Progress = silent  #: called with a sentence before each step
 
     @property
     def channels(self) -> tuple[str, ...]:

@@ -32,7 +32,7 @@ from mffit.pipeline.provenance import fitted_to, known_of_model, marked, rig_of_
 from mffit.points import Points
 from mffit.points.loading import Reading
 from mffit.prediction.stored import load
-from mffit.progress import READING, Progress, silent
+from mffit.progress import READING, WRITING_DIAGNOSIS, Progress, silent
 from mffit.rig import Simulation
 from mffit.scatter import rms
 from mffit.sweeps import formats
@@ -86,6 +86,7 @@ def diagnose(
         found = _explained(config, reading, chosen, effects, repair_all=repair_all, progress=progress)
     diagnosis = _stated(config, reading, found, chosen, out)
     if out is not None:
+        progress(WRITING_DIAGNOSIS)
         write_diagnosis(diagnosis, Path(out), project_of(config), protected=read)
     return diagnosis
 

@@ -20,8 +20,8 @@ import tir
 from mffit import __main__ as script
 from mffit.cli import commands, main
 from mffit.cli.console import progress
-from mffit.constants import SHARES_OF_A_BUILD
-from mffit.progress import FITTING, JUDGING, STEPS, ShownStep, remaining
+from mffit.constants import SHARES_OF_A_BUILD, SHARES_OF_A_DIAGNOSIS
+from mffit.progress import FITTING, JUDGING, STEPS, STEPS_OF_A_DIAGNOSIS, ShownStep, remaining
 
 SAMPLE = Path(__file__).parents[2] / "samples" / "front-120-70"
 
@@ -114,7 +114,9 @@ def test_a_step_tells_how_far_the_run_is(monkeypatch):
     assert ShownStep(JUDGING, now[0] - 58.0, writes=False).text().startswith("86 % done")
     now[0] += 100.0
     assert ShownStep(JUDGING, 0.0, writes=False).text(grain=5).startswith("85 % done")
-    assert ShownStep("trying every effect", 0.0).text() == "trying every effect"
+    assert ShownStep("trying 12 runs", 0.0).text() == "trying 12 runs"
+    assert sum(SHARES_OF_A_DIAGNOSIS) == pytest.approx(1.0)
+    assert len(SHARES_OF_A_DIAGNOSIS) == len(STEPS_OF_A_DIAGNOSIS)
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")

@@ -11,6 +11,7 @@ from mffit.diagnosis.notes import NotVisible, OneSweep, WithoutNoise
 from mffit.diagnosis.rest import Answer, RestKind
 from mffit.diagnosis.strangers import another_tyre
 from mffit.errors import InputError
+from mffit.progress import remaining
 
 
 def test_a_right_model_has_no_gap(right_model, nothing):
@@ -113,9 +114,14 @@ def test_a_model_of_another_tyre_is_said(right_model):
     assert another_tyre(worn, config) is None
 
 
-def test_the_same_input_gives_the_same_answer(stiffer_camber, camber):
-    case, config, points = stiffer_camber
-    assert as_json.document(diagnose(points, case.given, config)) == as_json.document(camber)
+def test_the_same_input_gives_the_same_answer_and_every_step_has_its_share(stiffer_camber, camber):
+    (case, config, points), said = stiffer_camber, []
+    again = diagnose(points, case.given, config, progress=said.append)
+    assert as_json.document(again) == as_json.document(camber)
+    shares = [remaining(sentence, 0.0)[0] for sentence in said]
+    assert len(shares) > 8
+    assert shares == sorted(shares)
+    assert max(np.diff(shares)) < 0.3  # of the time, so that it is seen to move
 
 
 def test_forces_alone_are_enough_for_an_effect_on_forces(stiffer_camber):
