@@ -104,7 +104,6 @@ MOST_BUMP_CENTRES = Count(41, "-", "Most centres of bumps along one angle.")
 SMOOTH_AMPLITUDES = Series(
     (0.001, 0.3), "-", "Smallest and largest smooth amplitude over the channel's size."
 )
-MOST_AMPLITUDES_KEPT = Count(8, "-", "Most covariances of smooth structure that are kept: each takes memory.")
 SMOOTH_AMPLITUDES_TRIED = Count(12, "-", "Smooth amplitudes that are tried, evenly in their logarithm.")
 LEAST_CERTAINTY = Real(
     0.85, "-", "Certainty against the best unnamed structure in its place that an effect needs."

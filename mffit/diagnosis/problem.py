@@ -93,8 +93,6 @@ class DiagnosisProblem:
             }
             other.amplitude, other.noise = amplitude, replace(self.structure.scatter, structure=sized)
             vars(other).pop("null", None)  # that of the other amplitude
-            while len(kept) >= constants.MOST_AMPLITUDES_KEPT:
-                del kept[next(iter(kept))]
             kept[key] = other
         return kept[key]
 
