@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from mffit import progress as steps
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import bump_scan
 from mffit.diagnosis.estimated import estimated
@@ -19,15 +20,6 @@ from mffit.diagnosis.scatter import beyond_memory, learned_noise
 from mffit.diagnosis.search import Search
 from mffit.diagnosis.selection import select
 from mffit.effects import Effect
-from mffit.progress import (
-    CHOOSING,
-    CHOOSING_AGAIN,
-    FITTING_ALL,
-    NOISE,
-    SIZING,
-    WEIGHING,
-    WEIGHING_AGAIN,
-)
 from mffit.rig import Simulation
 from mffit.scatter import rms
 
@@ -45,7 +37,7 @@ def explain(search: Search) -> Explanation:
         found = _selected_around(search, found.refined.state, noise, found.chosen)
     if found.chosen.effects and (found.bump.found or found.smooth.found):
         found = replace(found, imitated=imitations(found.problem, search.candidates))
-    search.progress(SIZING)
+    search.progress(steps.SIZING)
     return estimated(found, search)
 
 
@@ -58,7 +50,7 @@ def _all_at_once(search: Search) -> tuple[Simulation, Noise]:
     alike = [e for e in search.candidates if not e.differs_by_run]  # the others are rivals of the noise
     state, noise = start, search.stated
     read: np.ndarray | None = None
-    search.progress(FITTING_ALL)
+    search.progress(steps.FITTING_ALL)
     for _ in range(constants.MOST_EXPLANATION_ROUNDS):
         shared = search.shared(noise, state)
         at: dict[str, float] = (
@@ -75,7 +67,7 @@ def _all_at_once(search: Search) -> tuple[Simulation, Noise]:
             if moved < 1.0:  # over the noise: it stays the same
                 break
         if before is None:
-            search.progress(NOISE)
+            search.progress(steps.NOISE)
         noise = learned_noise(search, state)
     return state, noise
 
@@ -84,7 +76,7 @@ def _selected_around(
     search: Search, state: Simulation, noise: Noise, known: Hypothesis | None = None
 ) -> Explanation:
     """The effects selected from nothing and from all effects at once, or from a ``known`` set; coefficients estimated."""
-    search.progress(CHOOSING if known is None else CHOOSING_AGAIN)
+    search.progress(steps.CHOOSING if known is None else steps.CHOOSING_AGAIN)
     visible = beyond_memory(noise, search.candidates)
     problem = search.problem(state, noise, search.candidates if known is None else known.effects)
     places = [problem.null]
@@ -93,7 +85,7 @@ def _selected_around(
     else:
         places.append(refitted(problem, known, [e for e in visible if e.id in known.ids]))
     problem, chosen = select(problem, visible, places)
-    search.progress(WEIGHING if known is None else WEIGHING_AGAIN)
+    search.progress(steps.WEIGHING if known is None else steps.WEIGHING_AGAIN)
     return _certain(problem, chosen, visible).with_coefficients(search.inexact)
 
 

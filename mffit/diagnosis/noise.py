@@ -158,19 +158,19 @@ class Noise(ReadOnlyArrays):
     def directions(self) -> Directions:
         """Directions of the shared changes among the used readings, whitened for D, M and structure."""
         shared = np.zeros((len(self.u), 0)) if self.shared is None else self.shared
-        return Directions.of(self._by_channel(Directions.less, self._independent(shared[self.used])))
+        return Directions.of(self._through_structure(Directions.less, self._independent(shared[self.used])))
 
     @cached_property
     def directions_alone(self) -> Directions:
         """The same for products with differences that are whitened for D and M only."""
-        return self.directions._replace(axes=self._by_channel(Directions.less, self.directions.axes))
+        return self.directions._replace(axes=self._through_structure(Directions.less, self.directions.axes))
 
     @property
     def half_log_determinant(self) -> float:
         """Half the log determinant of the covariance of all that readings share, relative to the errors alone."""
         return sum(of.half_log_determinant for of in (self.directions, *self.structure.values()))
 
-    def _by_channel(
+    def _through_structure(
         self, change: Callable[[Directions, np.ndarray], np.ndarray], z: np.ndarray
     ) -> np.ndarray:
         """Rows (m,) or (m, k), those of every channel with structure changed by its directions."""
@@ -192,15 +192,15 @@ class Noise(ReadOnlyArrays):
 
     def whiten(self, x: np.ndarray) -> np.ndarray:
         """Whitened differences (m,) or (m, k) of the used readings, from readings (c n,) or (c n, k)."""
-        return self.directions.less(self._by_channel(Directions.less, self._independent(x[self.used])))
+        return self.directions.less(self._through_structure(Directions.less, self._independent(x[self.used])))
 
     def unshared(self, white: np.ndarray) -> np.ndarray:
         """Whitened differences (m,) or (m, k) as if readings shared no changes: the inverse of that part of the whitening."""
-        return self._by_channel(Directions.more, self.directions.more(white))
+        return self._through_structure(Directions.more, self.directions.more(white))
 
     def backwards(self, white: np.ndarray) -> np.ndarray:
         """The transpose of the whitening for shared changes, applied to whitened differences (m,) or (m, k)."""
-        return self._by_channel(Directions.less, self.directions.less(white))
+        return self._through_structure(Directions.less, self.directions.less(white))
 
     def whitened_alone(self, channel: str, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Positions (m,) of a channel's readings among the used ones, and its differences (n, k) whitened for D and M only."""
