@@ -93,7 +93,7 @@ class Noise(ReadOnlyArrays):
     weight: np.ndarray | None = None  #: (c n,) weight of each reading, below 1 for outliers; None: all 1
     shared: np.ndarray | None = None  #: (c n, k) changes that readings share, one standard deviation each
     structure: Mapping[str, Directions] = field(default_factory=dict)
-    """By channel, further such changes of its used readings, whitened for D and M."""
+    """By channel, further such changes of its used readings, whitened for these D and M; not in :meth:`error_of_sum`."""
     offsets: Mapping[str, RunOffsets] = field(default_factory=dict)
     """By id of the effect, offsets of runs that compete with autocorrelated errors; empty without autocorrelation."""
 
