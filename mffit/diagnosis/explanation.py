@@ -23,7 +23,7 @@ from mffit.numbers import Numbers
 from tir.frozen import ReadOnlyArrays
 
 
-class Place(NamedTuple):
+class WeighedPlace(NamedTuple):
     """The place of an effect among the others, compared with the best unnamed structure in it."""
 
     without: Hypothesis  #: the other effects, refitted
@@ -46,7 +46,7 @@ class Explanation(ReadOnlyArrays):
     freed: Numbers = EXACT  #: prior of these numbers
     weights: Noise | None = None  #: noise of their estimate; None before it
     strained: bool = False  #: whether the coefficients of a build would have to move further than it explains
-    places: tuple[Place, ...] = ()  #: of each chosen effect, once they are weighed
+    places: tuple[WeighedPlace, ...] = ()  #: of each chosen effect, once they are weighed
     further: Contest | None = None  #: all candidates in addition to the chosen effects
     contests: tuple[Contest, ...] = ()  #: for each chosen effect, all candidates in its place
     imitated: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -124,7 +124,7 @@ class Explanation(ReadOnlyArrays):
         outside, share = self.bump.found or self.smooth.found, self.places[k].share
         return (is_no_imitation(share, self.imitated) if outside else share) * self.certainty[k]
 
-    def _place(self, effect: Effect, left: float) -> Place:
+    def _place(self, effect: Effect, left: float) -> WeighedPlace:
         """The place of an effect; ``left`` is what the best bump gains in addition to the chosen effects."""
         chosen = self.chosen
         without = refitted(self.problem, chosen, chosen.others(effect))
@@ -135,7 +135,7 @@ class Explanation(ReadOnlyArrays):
         open_ = left + (self.smooth.gain if self.smooth.found else 0.0)
         explains = max(gain, chosen.alone - without.alone, 0.0)
         share = explains / (explains + open_) if open_ else 1.0
-        return Place(without, float(np.clip(against, -500.0, 500.0)), share)
+        return WeighedPlace(without, float(np.clip(against, -500.0, 500.0)), share)
 
     def left(self, hypothesis: Hypothesis) -> float:
         """Gain of log evidence by the best bump in addition to a hypothesis; at least 0."""
