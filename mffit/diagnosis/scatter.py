@@ -148,9 +148,10 @@ class ScatterOfChannel(ReadOnlyArrays):
             span: [p[p >= 0] for p in (place[c] for c in found) if np.any(p >= 0)]
             for span, found in self.chains.items()
         }
-        noise = {name: part[rows] for name, part in self.terms.noise.items()}
-        u = np.sqrt(noise["scale"])
-        columns = {name: _condensed(term[rows], u) for name, term in self.terms.columns.items()}
+        columns, noise = (
+            {name: term[rows] for name, term in terms.items()}
+            for terms in (self.terms.columns, self.terms.noise)
+        )
         terms = Chained(self.terms.residual[rows], columns, noise, (), self.terms.weight[rows])
         return ScatterOfChannel(terms, chains, self.sweep[rows])
 
