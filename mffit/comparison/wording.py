@@ -1,7 +1,7 @@
 """The sentences about a comparison."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from mffit.comparison.characteristics import Tested
 from mffit.comparison.of_rig import ExplainedByRig
@@ -18,7 +18,8 @@ from mffit.quantities import (
     SIDEWAYS,
     QuantityName,
 )
-from mffit.rig_errors import shown, words_of
+from mffit.rig_errors import BY_NAME as ERRORS
+from mffit.rig_errors import shown, unit_of, words_of
 from mffit.rounding import AtLeast, number, stated
 from tir import Quantity
 from tir.errors import listed, some
@@ -252,12 +253,12 @@ def note_on_own_peaks(numbers: Iterable[Difference]) -> Iterator[str]:
         )
 
 
-def note_on_temperature(name: str, T_ref: float) -> str:
-    """The remark that the readings of a file were simulated at the temperatures of the points."""
-    return (
-        f"{name} holds at {T_ref:g} degC; its temperature terms take it to the temperature of every point (T_degC), where that "
-        "is known."
-    )
+def note_on_conditions(name: str, beside: Mapping[str, float]) -> str:
+    """The remark that a file was simulated at the conditions of the points, by its terms ``beside`` the formula."""
+    held = [
+        f"{value:g} {unit_of(term)}" for term, value in sorted(beside.items()) if ERRORS[term].place is None
+    ]
+    return f"{name} holds at {listed(held)}; its terms take it to the conditions of every point, where they are known."
 
 
 def note_on_data(file: str) -> str:

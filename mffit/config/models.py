@@ -239,6 +239,7 @@ class FitTable(Table):
     temperature: Literal["auto", True, False] = "auto"
     T_ref_degC: q.Temperature | None = None  #: of the file at temperature; None: the mean of the data
     pressure: Literal["auto", True, False] = "auto"  #: what pressure does beyond the coefficients
+    speed: Literal["auto", True, False] = "auto"
     sense: Literal["auto", "hysteresis", "lag", False] = "auto"
     warm_up: Literal["auto", True, False] = False
     wear: Literal["auto", True, False] = False

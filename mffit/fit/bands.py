@@ -13,6 +13,7 @@ from mffit.fit.ranges import sideslips_with_slip, tested_ranges
 from mffit.points import Points, levels, main_pressure, make_points
 from mffit.prediction import Predictor
 from mffit.rig import Simulation
+from mffit.rig_errors import V_REF
 from mffit.scatter import rms
 
 
@@ -80,16 +81,16 @@ def bands(
     pressures = [*levels.level_values(points.p, levels.PRESSURE), float(tyre.values["NOMPRES"])]
     others = tuple(sorted({float(p) for p in pressures if abs(p - main) > levels.PRESSURE.tolerance}))
     beside = {band.channel: band for band in _beside_sweeps(known, tyre, points)}
-    elsewhere = _grid(points, others) if others else None
+    elsewhere = _grid(known, points, others) if others else None
     unseen, share = _widest(known, held, tyre, elsewhere) if elsewhere is not None else ("", 0.0)
     return Bands(
         main=main,
-        half=_half(known, tyre, _grid(points, (main,))),
+        half=_half(known, tyre, _grid(known, points, (main,))),
         others=others,
         half_of_others=_half(known, tyre, elsewhere) if elsewhere is not None else 0.0,
         unseen=unseen if share > 0.5 else "",
         share=share,
-        half_of_exact_zeros=_half(exact_zeros or known, tyre, _grid(points, (main,))),
+        half_of_exact_zeros=_half(exact_zeros or known, tyre, _grid(known, points, (main,))),
         combined=beside.get("Fx"),
         other_side=beside.get("Fy"),
     )
@@ -105,7 +106,7 @@ def _beside_sweeps(known: Predictor, tyre: Simulation, points: Points) -> Iterat
         alpha = float(points.alpha[np.argmax(np.abs(points.alpha))])
         found.append(("Fy", alpha, -alpha))
     for channel, at, beside in found:
-        halves = [_half(known, tyre, _at_sideslip(points, channel, x), channel) for x in (at, beside)]
+        halves = [_half(known, tyre, _at_sideslip(known, points, channel, x), channel) for x in (at, beside)]
         yield BandBesideSweeps(channel, at, halves[0], beside, halves[1])
 
 
@@ -124,7 +125,7 @@ def _widest(known: Predictor, held: Collection[str], tyre: Simulation, where: Po
     return max(shares.items(), key=lambda row: row[1], default=("", 0.0))
 
 
-def _grid(points: Points, pressures: tuple[float, ...]) -> Points:
+def _grid(known: Predictor, points: Points, pressures: tuple[float, ...]) -> Points:
     """Conditions on a straight path over the tested angles and loads."""
     tested = tested_ranges(points)
     axes = (
@@ -134,10 +135,10 @@ def _grid(points: Points, pressures: tuple[float, ...]) -> Points:
         np.array(pressures),
     )
     Fz, gamma, alpha, p = (axis.ravel() for axis in np.meshgrid(*axes))
-    return make_points(alpha, gamma, Fz, p=p, V=float(np.median(points.V)), phi_t=0.0)
+    return make_points(alpha, gamma, Fz, p=p, V=_speed(known, points), phi_t=0.0)
 
 
-def _at_sideslip(points: Points, channel: str, alpha: float) -> Points:
+def _at_sideslip(known: Predictor, points: Points, channel: str, alpha: float) -> Points:
     """Conditions of the upright wheel at a sideslip, over the tested loads and, for Fx, longitudinal slips."""
     tested = tested_ranges(points)
     ends = (tested["KPUMIN"], tested["KPUMAX"]) if channel == "Fx" else (0.0, 0.0)
@@ -145,5 +146,10 @@ def _at_sideslip(points: Points, channel: str, alpha: float) -> Points:
         np.linspace(tested["FZMIN"], tested["FZMAX"], constants.LOADS_OF_A_GRID),
         np.linspace(*ends, constants.STEPS_OF_A_GRID if channel == "Fx" else 1),
     )
-    p, V = float(np.median(points.p[main_pressure(points)])), float(np.median(points.V))
+    p, V = float(np.median(points.p[main_pressure(points)])), _speed(known, points)
     return make_points(alpha, 0.0, Fz.ravel(), kappa=kappa.ravel(), p=p, V=V, phi_t=0.0)
+
+
+def _speed(known: Predictor, points: Points) -> float:
+    """Speed [m/s] at which the files hold, else the usual one."""
+    return known.beside.get(V_REF, float(np.median(points.V)))

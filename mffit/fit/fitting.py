@@ -17,7 +17,7 @@ from mffit.fit.coefficients import of_file
 from mffit.fit.delivery import Beside, deliver
 from mffit.fit.fitted import left_by, with_errors_of
 from mffit.fit.influences.confounding import confounding_sentence, confoundings
-from mffit.fit.influences.modelled import at_temperature, between_runs
+from mffit.fit.influences.modelled import at_temperature, between_runs, over_speed, without_terms
 from mffit.fit.influences.nuisance_choice import at_reference
 from mffit.fit.influences.with_nuisances import NuisanceFit, fit_with_nuisances
 from mffit.fit.plan import FitPlan
@@ -45,7 +45,7 @@ from mffit.points import Points
 from mffit.prediction import predictor
 from mffit.progress import DERIVING, PREDICTING, Progress, silent
 from mffit.rig import Simulation
-from mffit.rig_errors import BESIDE
+from mffit.rig_errors import P_REF
 from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, after_the_fit
 from mffit.suspicion.mounts import undeclared_mount
 from mffit.suspicion.outliers import outliers
@@ -82,10 +82,8 @@ def fit(
     else:
         left_by_file, fitted = left_by_formula, full
     found = replace(found, plain=fitted, full=full)
-    # A property file has no coefficient for these effects, so they are switched off.
-    delivered = fitted.simulation.with_numbers(
-        {e.name: e.undisturbed for e in BESIDE if e.name in fitted.rig}
-    )
+    # Pressure is an input of a property file, which has no coefficient for these effects of it, so they are switched off.
+    delivered = without_terms(fitted, [P_REF])
     readings, best = (one.readings(points, problem.channels) for one in (delivered, full.simulation))
     outlying = outliers(points, problem.sigma, found.stated.sigma, best)
     at_turns = full.problem.turning()
@@ -102,7 +100,7 @@ def fit(
         file = special.files.by_use[use]
         temperature = at_temperature(found, points, file, own, left_by_formula, setups)
 
-    runs = between_runs(found, points)
+    runs, speed = between_runs(found, points), over_speed(found, points)
     confounded = confoundings(replace(full, problem=at_reference(config, full.problem)))
     channels = agreement.with_points(readings, points)
     tyre = files.by_use["turn-slip" if config.rig.on_disc else "normal"].tyre
@@ -158,6 +156,7 @@ def fit(
         left_by_file=left_by_file,
         files=files,
         temperature=temperature,
+        speed=speed,
         choice=found.choice,
         runs=runs,
         confounded=confounded,

@@ -13,7 +13,7 @@ from mffit.fit.coefficients import Coefficient
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.fitted import Fitted
 from mffit.fit.influences.confounding import Confounding
-from mffit.fit.influences.modelled import AtTemperature, BetweenRuns
+from mffit.fit.influences.modelled import AtTemperature, BetweenRuns, OverSpeed
 from mffit.fit.influences.nuisance_choice import NuisanceChoice
 from mffit.fit.relaxation import Relaxation
 from mffit.fit.wheel.vertical import Vertical
@@ -62,6 +62,7 @@ class FitResult(ReadOnlyArrays, Brief):
     bands: Bands | None = None  #: widths of the 95 % bands
     files: Files | None = None  #: every written file and its misfit
     temperature: AtTemperature | None = None  #: the model with temperature terms, if modelled
+    speed: OverSpeed | None = None  #: terms over the speed, if modelled
     confounded: tuple[Confounding, ...] = ()  #: settings that are correlated with temperature
     relaxation: tuple[Relaxation, ...] = ()  #: carcass stiffnesses from steps of sideslip and of slip
     runs: BetweenRuns | None = None  #: random effects of the runs, if modelled
@@ -76,8 +77,9 @@ class FitResult(ReadOnlyArrays, Brief):
 
     @property
     def of_file(self) -> Mapping[str, Agreement]:
-        """By channel, agreement of the written file, which has no effects of single runs, with the points."""
-        return self.channels if self.runs is None else self.runs.alone
+        """By channel, agreement with the points of the written file, which has neither effects of single runs nor of speed."""
+        beside = self.runs or self.speed
+        return self.channels if beside is None else beside.alone
 
     @property
     def headline(self) -> str:
@@ -88,7 +90,7 @@ class FitResult(ReadOnlyArrays, Brief):
 
 keys(
     FitResult,
-    "channels radii odd coefficients rig temperature modelled runs relaxation confounded bands "
+    "channels radii odd coefficients rig temperature speed modelled runs relaxation confounded bands "
     "posterior coverage left files explanations seconds",
     radii=lambda found: found.radii.agreement(found.tyre.values),
     rig=lambda found: rig_estimates(found.rig if found.temperature is None else found.temperature.rig),

@@ -12,6 +12,7 @@ from mffit.fit.rig.rig_numbers import COMPLIANCE
 from mffit.measured import LoadResult
 from mffit.points import Points, main_path, main_pressure, make_points
 from mffit.rig import Simulation
+from mffit.rig_errors import V_REF
 from tir import Quantity
 
 STEP = 1e-4  # rad; the curve bends by less than 1e-6 of its slope
@@ -48,9 +49,10 @@ class _Slope(NamedTuple):
 
 
 def _slope(tyre: Simulation, points: Points, load: float, phi_t: float, names: Sequence[str]) -> _Slope:
-    """The model's slope on a path of turn slip ``phi_t`` [1/m], at the usual pressure and speed of ``points``."""
-    usual = main_pressure(points)
-    p, V = float(np.median(points.p[usual])), float(np.median(points.V[usual]))
+    """The model's slope on a path of turn slip ``phi_t`` [1/m], at the usual pressure of ``points`` and the file's speed."""
+    usual, stated = main_pressure(points), tyre.faults[V_REF]
+    p, V = (float(np.median(values[usual])) for values in (points.p, points.V))
+    V = V if math.isnan(stated) else stated
     around = make_points(np.array([STEP, -STEP]), 0.0, load, p=p, V=V, phi_t=phi_t)
     forces, by_coefficient = tyre.sensitivities(around, names)
     up, down = forces.Fy

@@ -25,8 +25,9 @@ from mffit.fit.written.files import Files, file_names, name_at_temperature
 from mffit.measured import Measured
 from mffit.measured.wording import SOURCES
 from mffit.points import Points
+from mffit.points.levels import SPEED
 from mffit.quantities import CHANNELS
-from mffit.rig_errors import BESIDE, ZEROS, error_of, shown, unit_of, words_of
+from mffit.rig_errors import BESIDE, V_REF, ZEROS, RigError, error_of, shown, unit_of, words_of
 from mffit.rounding import ascii_only, number, rounded, to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
 from mffit.suspicion.constants import DIFFERENCE_OF_ANOTHER_TYRE
@@ -365,9 +366,30 @@ def _size(verdict: Verdict, found: NuisanceFit, runs: BetweenRuns | None) -> str
         )
     stated = (f"{words_of(n)} {_stated(n, *found.full.rig[n])}" for n in verdict.nuisance.numbers)
     told = f"{', '.join(stated)}, and the files are without it"
-    if {error.name for error in BESIDE}.issuperset(verdict.nuisance.numbers):
-        told += f": they hold at {found.full.rig_stated['p_ref_kPa'][0]:g} kPa, MF 6.2 has no term for it, and predict adds it"
+    errors = [error for error in BESIDE if error.name in verdict.nuisance.numbers]
+    for reference in dict.fromkeys(error.counts_from for error in errors):
+        here = found.full.rig_stated[reference][0]
+        told += (
+            f": they hold at {here:g} {unit_of(reference)}, MF 6.2 has no term for it, and predict adds it"
+        )
+        if reference == V_REF:
+            told += _at_other_speeds(found.full, here, errors)
     return ascii_only(told)
+
+
+def _at_other_speeds(full: Fitted, here: float, terms: Sequence[RigError]) -> str:
+    """What a simulation at the ends of the tested speeds sets in a file that holds ``here`` [m/s]."""
+    V = full.problem.points.V
+    ends = (
+        end for end in (float(V.min()), float(V.max())) if not np.isclose(end, here, rtol=SPEED.tolerance)
+    )
+    return "".join(
+        f"; at {end:.3g} m/s take "
+        + listed(
+            [f"{term.acts_on[0]} {1.0 + full.rig[term.name][0] * (end - here):.3f} times" for term in terms]
+        )
+        for end in ends
+    )
 
 
 def _files_sentence(name: str, found: AtTemperature, plain: Mapping[str, Agreement]) -> str:

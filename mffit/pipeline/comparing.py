@@ -23,13 +23,13 @@ from mffit.pipeline.provenance import (
     fitted_to,
     missed_by_file,
     posterior_of,
-    temperature_of,
+    terms_beside,
     use_of,
 )
 from mffit.points import Points
 from mffit.progress import READING, Progress, silent
 from mffit.rig import Simulation
-from mffit.rig_errors import NO_FAULTS, T_REF
+from mffit.rig_errors import NO_FAULTS
 from mffit.viewer.named import tell_apart
 
 
@@ -148,12 +148,12 @@ def _with_data(subject: ComparedSubject, config: Config) -> Comparison:
     points = read_points(config).points
     base = read_base(config)
     turn_slip = config.model.turn_slip and config.rig.on_disc
-    warm = temperature_of(subject.tyre)
-    faults = declared_faults(config.rig).replace(**warm)
+    beside = terms_beside(subject.tyre)
+    faults = declared_faults(config.rig).replace(**beside)
     simulation = Simulation.of(subject.tyre, faults, turn_slip=turn_slip, star=config.model.star)
     if config.rig.radius is not None:
         simulation = replace(simulation, radius_m=config.rig.radius)
-    perfect = NO_FAULTS.replace(**warm)
+    perfect = NO_FAULTS.replace(**beside)
     faultless = replace(simulation, faults=perfect).readings(points)
 
     def direct(declared: Config, rows: Points) -> tuple[LoadResult, ...]:
@@ -170,6 +170,6 @@ def _with_data(subject: ComparedSubject, config: Config) -> Comparison:
     own = subject.known is not None and fitted_to(subject.tyre, config)
     by_rig = explained_by_rig(points, simulation, declared, subject.missed)
     notes = (*found.notes, *wording.notes_on_rig(by_rig))
-    if warm:
-        notes += (wording.note_on_temperature(subject.name, warm[T_REF]),)
+    if beside:
+        notes += (wording.note_on_conditions(subject.name, beside),)
     return replace(found, by_rig=by_rig, fitted=own, notes=notes)

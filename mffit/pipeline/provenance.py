@@ -24,12 +24,12 @@ from mffit.output import BUILT
 from mffit.pipeline.inputs import input_hashes
 from mffit.quantities import DIRECT, KEYS
 from mffit.results import TEMPERATURE
-from mffit.rig_errors import T_REF, error_of, unit_of
+from mffit.rig_errors import error_of, unit_of
 from mffit.suspicion import Trust
 from tir import Tyre
 from tir.errors import listed
 from tir.record import DISTRUSTED
-from tir.temperature import CURVED_BY, HIGHEST, LOWEST, REFERENCE, RIG, terms_of
+from tir.temperature import CURVED_BY, HIGHEST, LOWEST, RIG
 
 PROGRAM = "program"
 """Key of the version that wrote a file."""
@@ -72,6 +72,13 @@ def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult,
             **inputs,
         }
         quantities = {**measured.quantities(), **_of_rig(fitted.rig if special is None else special.rig)}
+        if (speed := fitted.speed) is not None:
+            low, high = speed.V_range
+            scaled = listed([error.acts_on[0] for name in speed.terms if (error := error_of(name))])
+            provenance["speed"] = (
+                f"holds at {speed.V_ref:g} m/s, elsewhere {scaled} times 1 + k (V - {speed.V_ref:g}), with "
+                f"{', '.join(RIG + name for name in speed.terms)}, tested from {low:.3g} to {high:.3g} m/s"
+            )
         if special is not None:
             low, high = special.T_range
             quantities |= {LOWEST: tir.Quantity(low, 0.0, "degC"), HIGHEST: tir.Quantity(high, 0.0, "degC")}
@@ -120,11 +127,13 @@ def rig_of_build(tyre: Tyre) -> dict[str, float] | None:
     return {name: value for name, value in found.items() if error_of(name)} or None
 
 
-def temperature_of(tyre: Tyre) -> dict[str, float]:
-    """The temperature terms of a file and the temperature at which it holds, by rig number; empty without terms."""
-    terms = terms_of(tyre)
-    found = {name: term.value for name, term in terms.items()}
-    return found | {T_REF: tyre.measured[REFERENCE].value} if found else {}
+def terms_beside(tyre: Tyre) -> dict[str, float]:
+    """A file's terms over temperature, pressure and speed, and the conditions at which it holds, by rig number."""
+    rig = rig_of_build(tyre) or {}
+    counted = {
+        name: error.counts_from for name in rig if (error := error_of(name)) and error.counts_from in rig
+    }
+    return {name: rig[name] for name in {*counted, *counted.values()}}
 
 
 def fitted_to(tyre: Tyre, config: Config) -> bool:

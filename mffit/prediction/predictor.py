@@ -24,7 +24,7 @@ from mffit.points.points import OF_SI
 from mffit.prediction.conditions import PATH, UNITS
 from mffit.quantities import column, u_column
 from mffit.rig import Readings, Simulation
-from mffit.rig_errors import BESIDE, T_REF, ZEROS, error_of
+from mffit.rig_errors import BESIDE, T_REF, V_REF, ZEROS, error_of
 from tir import Tyre
 from tir.correction import share_of_load, slip_beyond
 from tir.frozen import ReadOnlyArrays
@@ -210,17 +210,22 @@ class Predictor(ReadOnlyArrays):
         ``file`` and ``fitted`` simulate a file of the build and the fitted model on a rig without errors.
         """
         names = [name for name in self.channels if channels is None or name in channels]
+        plain, points = file.readings(points, names), self._held(points)
         if self.T_range is None:
-            return self._forces(file, fitted, points, names)
+            return self._forces(plain, fitted, points, names)
         unstated = ~np.isfinite(points.T)
         held = points.replace(T=np.clip(points.T, *self.T_range))
         if not np.any(unstated):
-            return self._forces(file, fitted, held, names)
+            return self._forces(plain, fitted, held, names)
         each = [
-            self._forces(file, fitted, held.replace(T=np.where(unstated, T, held.T)), names)
+            self._forces(plain, fitted, held.replace(T=np.where(unstated, T, held.T)), names)
             for T in self._usual_temperatures()
         ]
         return {name: _mixed([one[name] for one in each]) for name in names}
+
+    def _held(self, points: Points) -> Points:
+        """The points with their speeds held to the tested ones, if the tyre changes with the speed."""
+        return points.replace(V=np.clip(points.V, *self.V_range)) if V_REF in self.beside else points
 
     def _usual_temperatures(self) -> tuple[float, ...]:
         """Temperatures [degC] over which a prediction that states none averages."""
@@ -229,10 +234,9 @@ class Predictor(ReadOnlyArrays):
         return found or (float(self.beside[T_REF]),)
 
     def _forces(
-        self, file: Simulation, fitted: Simulation, points: Points, names: Sequence[str]
+        self, plain: Readings, fitted: Simulation, points: Points, names: Sequence[str]
     ) -> dict[str, PredictedForce]:
         fitted = fitted.with_numbers(self.beside)
-        plain = file.readings(points, names)
         forces, slopes = fitted.sensitivities(points, self.names, names)
         by_zeros = fitted.sensitivities(points, [*self.setups], names)[1]
         as_read = fitted.with_numbers(self.zeros).readings(points, names)
@@ -321,7 +325,7 @@ class Predictor(ReadOnlyArrays):
     @property
     def _of_tyre(self) -> np.ndarray:
         """Mask (k,) of the numbers that are the tyre's."""
-        return np.array([error_of(name) is None for name in self.names])
+        return np.array([(error := error_of(name)) is None or error in BESIDE for name in self.names])
 
     def band(
         self, file: Simulation, fitted: Simulation, points: Points, channels: Iterable[str] | None = None
@@ -332,7 +336,7 @@ class Predictor(ReadOnlyArrays):
 
     def beyond(self, fitted: Tyre, points: Points, names: Collection[str]) -> Readings:
         """By channel, the force (n,) of effects for which a property file has no coefficient."""
-        file = Simulation.of(fitted, turn_slip=self.curved)
+        file, points = Simulation.of(fitted, turn_slip=self.curved), self._held(points)
         whole, plain = (one.readings(points, names) for one in (file.with_numbers(self.beside), file))
         return Readings(**{name: whole[name] - plain[name] for name in names})
 
@@ -449,11 +453,12 @@ def predictor(
         error = error_of(number)
         if error in ZEROS and number not in known and abs(value) >= abs(zeros.get(error.name, 0.0)):
             zeros[error.name] = value
-    # Coefficients, and rig errors that a further run shares with the readings: calibrations and lasting zeros.
+    # Numbers of the tyre, and rig errors that a further run shares with the readings: calibrations and lasting zeros.
     kept = [
         i
         for i, n in enumerate(left.numbers)
-        if (error := error_of(n.name)) is None or (n.name == error.name and error.has_prior)
+        if (error := error_of(n.name)) is None
+        or (n.name == error.name and (error.has_prior or error in BESIDE))
     ]
     spread = {
         i: 0.0 if number.name in known else number.spread

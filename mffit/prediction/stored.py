@@ -28,6 +28,7 @@ from mffit.prediction.conditions import PATH, checked, read_conditions
 from mffit.prediction.predictor import MissedChannel, Predictor
 from mffit.quantities import CHANNELS, COLUMNS
 from mffit.rig_errors import BY_NAME as ERROR_OF
+from mffit.rig_errors import V_REF
 from tir import TirWarning, Tyre
 from tir.envelope import RANGES
 from tir.errors import counted, listed
@@ -163,13 +164,15 @@ def _beyond_ranges(known: Predictor, tyre: Tyre, table: pd.DataFrame) -> Iterato
         for name, keys in zip(("Fz_N", "gamma_deg", "p_kPa", "alpha_deg", "kappa"), RANGES, strict=True)
     }
     of_file = "the range of the property file", "no reading supports force or uncertainty there"
-    words = dict.fromkeys(ranges, of_file)
+    nearest, words = "the force is that at the nearest of them", dict.fromkeys(ranges, of_file)
     if "V_mps" in table:
         points = points.replace(V=table["V_mps"].to_numpy(dtype=float))
         ranges["V_mps"], words["V_mps"] = known.V_range, ("the tested speeds", of_file[1])
+        if V_REF in known.beside:
+            words["V_mps"] = "the tested speeds", nearest
     if known.T_range is not None:
         ranges["T_degC"] = known.T_range
-        words["T_degC"] = "the tested temperatures", "the force is that at the nearest of them"
+        words["T_degC"] = "the tested temperatures", nearest
     if known.curved:
         ranges[PATH] = (-known.sharpest, known.sharpest)
         words[PATH] = "the tested path curvature", of_file[1]

@@ -56,9 +56,11 @@ def verdict(result: BuildResult) -> str:
         if (ratio := ratios.get(name, 0.0)) > 0.0:
             misfit[name] += f" ({times(ratio, 1.0)} the noise)"
     what = f"{len(result.points)} points are fitted to {listed([*misfit.values()])}"
-    if fit.runs is not None:
+    holds = ["for the mean of the runs"] * (fit.runs is not None)
+    holds += [f"at {fit.speed.V_ref:g} m/s"] if fit.speed is not None else []
+    if holds:
         left = [_rmse(name, a) for name, a in fit.of_file.items() if a.n]
-        what += f"; the file, which holds for the mean of the runs, leaves {listed(left)}"
+        what += f"; the file, which holds {listed(holds)}, leaves {listed(left)}"
     return f"{result.tir_path} is {judged(result)}: {what}."
 
 

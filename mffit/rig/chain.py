@@ -14,7 +14,7 @@ from mffit.quantities import CHANNELS
 from mffit.rig.histories import History, RowsOfTest, path_radii
 from mffit.rig.lag import lagged_setting
 from mffit.rig.play import settled
-from mffit.rig_errors import AFTER, BEFORE, T_REF, RigError
+from mffit.rig_errors import AFTER, BEFORE, P_REF, T_REF, V_REF, RigError
 from tir.derivatives import Traced, gradient, plain, traced
 from tir.evaluate import turned_on_rim
 from tir.outputs import outputs_of
@@ -120,14 +120,16 @@ class Chain:
         return np.where(known, np.nan_to_num(self.points.T) - self.numbers[T_REF], 0.0)
 
     @cached_property
-    def speed_above_usual(self) -> np.ndarray:
-        """Speed above the most frequent one (n,) [m/s]; 0 where it was not measured."""
-        return np.nan_to_num(self.points.V - self._history.usual_speed)
+    def speed_above_reference(self) -> Any:
+        """Speed above that at which the model holds, the most frequent one unless stated (n,) [m/s]; 0 where it is unknown."""
+        stated, V = self.numbers[V_REF], self.points.V
+        reference = self._history.usual_speed if np.isnan(plain(stated)) else stated
+        return np.where(np.isfinite(V), np.nan_to_num(V) - reference, 0.0)
 
     @property
     def pressure_above_reference(self) -> Any:
         """Pressure above that at which the coefficients hold (n,) [kPa]."""
-        reference = self.numbers["p_ref_kPa"]
+        reference = self.numbers[P_REF]
         nominal = 1e-3 * self._coefficients["NOMPRES"]
         return 1e-3 * self.points.p - (nominal if np.isnan(reference) else reference)
 

@@ -6,8 +6,10 @@ from mffit.rig_errors.catalog import BESIDE as BESIDE
 from mffit.rig_errors.catalog import BY_NAME as BY_NAME
 from mffit.rig_errors.catalog import CALIBRATED as CALIBRATED
 from mffit.rig_errors.catalog import DECLARED as DECLARED
+from mffit.rig_errors.catalog import P_REF as P_REF
 from mffit.rig_errors.catalog import RIG_ERRORS as RIG_ERRORS
 from mffit.rig_errors.catalog import T_REF as T_REF
+from mffit.rig_errors.catalog import V_REF as V_REF
 from mffit.rig_errors.catalog import ZEROS as ZEROS
 from mffit.rig_errors.faults import NO_FAULTS as NO_FAULTS
 from mffit.rig_errors.faults import OF_RUN as OF_RUN

@@ -8,8 +8,8 @@ from mffit.rig_errors import constants
 from mffit.rig_errors.formulae import CALIBRATES, CAMBER_STIFFNESS, FORCE_AT_ZERO, FORMULAE
 from mffit.rig_errors.record import BEFORE_THE_TYRE, Appearance, Declared, Place, RigError
 
-T_REF = "T_ref_degC"
-"""Number with the temperature at which the fitted model holds."""
+P_REF, T_REF, V_REF = "p_ref_kPa", "T_ref_degC", "V_ref_mps"
+"""Numbers with the pressure, the temperature and the speed at which the fitted model holds."""
 
 
 def rig_error(name: str, row: dict[str, Any]) -> RigError:
@@ -53,7 +53,9 @@ DECLARED = tuple((error, error.declared) for error in RIG_ERRORS if error.declar
 """Errors whose uncertainty ``[rig]`` states, each with its declaration."""
 ZEROS = tuple(error for error in RIG_ERRORS if error.of_setup)
 """Errors that differ from set-up to set-up."""
-BESIDE = (BY_NAME["p_ref_kPa"], BY_NAME["k_p_arm_per_kPa"])
-"""Effects of the tyre over known conditions, for which the formula has no coefficient."""
+BESIDE = tuple(
+    error for error in RIG_ERRORS if error.kind == "tyre" and error.place in (None, Place.COEFFICIENTS)
+)
+"""Effects of the tyre over known conditions, for which the formula has no coefficient, and the conditions they count from."""
 CALIBRATED = {error.acts_on[0]: declared.key for error, declared in DECLARED if error.is_gain}
 """By channel with a calibration, the key of ``[rig]`` that states its uncertainty."""

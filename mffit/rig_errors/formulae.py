@@ -32,6 +32,11 @@ def warmed(k: Any, value: Any, at: Any) -> Any:
     return value * (1.0 + k * at.warmth)
 
 
+def sped(k: Any, value: Any, at: Any) -> Any:
+    """A force or a scaling factor times 1 + k (V - V_ref)."""
+    return value * (1.0 + k * at.speed_above_reference)
+
+
 def changed(share: Any, value: Any, at: Any) -> Any:
     """A scaling factor times 1 plus the number of a run."""
     return value * (1.0 + share)
@@ -61,6 +66,10 @@ FORMULAE: dict[str, Formula] = {
     "k_T_camber_per_K": warmed,
     "k_T_drive_grip_per_K": warmed,
     "k_T_slip_stiffness_per_K": warmed,
+    "k_V_grip_per_mps": sped,
+    "k_V_stiffness_per_mps": sped,
+    "k_V_drive_grip_per_mps": sped,
+    "k_V_slip_stiffness_per_mps": sped,
     "k_p_arm_per_kPa": lambda k, QSX3, at: QSX3 + k * at.pressure_above_reference,
     "run_grip": changed,
     "run_stiffness": changed,
@@ -76,7 +85,7 @@ FORMULAE: dict[str, Formula] = {
     "k_t_per_s": lambda k, force, at: force * (1.0 + k * at.time),
     "wear_per_km": lambda wear, force, at: force * (1.0 + wear * at.distance_km),
     "warm_up": lambda share, force, at: force * (1.0 - share * np.exp(-at.distance_km)),
-    "k_V_per_mps": lambda k, force, at: force * (1.0 + k * at.speed_above_usual),
+    "k_V_per_mps": sped,
     "gain": scaled,
     "gain_Mx": scaled,
     "gain_My": scaled,

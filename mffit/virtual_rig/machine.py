@@ -75,6 +75,12 @@ def _usual_pressure(m: Machine) -> float:
     return m.tyre["NOMPRES"] / 1000.0 if np.isnan(stated) else stated
 
 
+def _faster(s: Settings, m: Machine) -> np.ndarray:
+    """Speed (n,) above that at which speed has no influence [m/s]."""
+    stated = m.faults["V_ref_mps"]
+    return s.V - (m.usual_speed if np.isnan(stated) else stated)
+
+
 STEERS: dict[str, Formula] = {
     "gain_alpha": lambda x, s, m: x * s.alpha - s.alpha,
     "alpha_0_deg": lambda x, s, m: np.deg2rad(x),
@@ -107,6 +113,10 @@ SCALES: dict[str, tuple[str, Formula]] = {
     "k_T_camber_per_K": ("LKYC", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
     "k_T_drive_grip_per_K": ("LMUX", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
     "k_T_slip_stiffness_per_K": ("LKX", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
+    "k_V_grip_per_mps": ("LMUY", lambda x, s, m: 1.0 + x * _faster(s, m)),
+    "k_V_stiffness_per_mps": ("LKY", lambda x, s, m: 1.0 + x * _faster(s, m)),
+    "k_V_drive_grip_per_mps": ("LMUX", lambda x, s, m: 1.0 + x * _faster(s, m)),
+    "k_V_slip_stiffness_per_mps": ("LKX", lambda x, s, m: 1.0 + x * _faster(s, m)),
     "run_grip": ("LMUY", lambda x, s, m: 1.0 + x),
     "run_stiffness": ("LKY", lambda x, s, m: 1.0 + x),
     "sweep_heating": ("LMUY", lambda x, s, m: 1.0 + x * np.arange(len(s)) / max(len(s) - 1, 1)),
@@ -118,7 +128,7 @@ ADDED: dict[str, tuple[str, Formula]] = {
 """Terms added to coefficients of the tyre."""
 SURROUNDINGS: dict[str, Formula] = {
     "k_T_per_K": lambda x, s, m: 1.0 + x * _kelvin(s, m),
-    "k_V_per_mps": lambda x, s, m: 1.0 + x * (s.V - m.usual_speed),
+    "k_V_per_mps": lambda x, s, m: 1.0 + x * _faster(s, m),
     "k_t_per_s": lambda x, s, m: 1.0 + x * s.t,
     "wear_per_km": lambda x, s, m: 1.0 + x * s.rolled_m / 1000.0,
     "warm_up": lambda x, s, m: 1.0 - x / np.exp(s.rolled_m / 1000.0),

@@ -7,7 +7,9 @@ falls with the slip and with the load, and the contact grows with the square roo
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -118,14 +120,31 @@ def sweeps() -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
     }
 
 
-def written(tyre: Brush, folder: Path, seed: int, play: float = 0.0) -> Path:
-    """The project of a campaign of the tyre; the sideslip axis has ``play`` [deg] that nothing declares."""
+def written(
+    tyre: Brush,
+    folder: Path,
+    seed: int,
+    play: float = 0.0,
+    also: Mapping[float, Brush] = MappingProxyType({}),
+    only: str = "",
+) -> Path:
+    """The project of a campaign of the tyre at 10 m/s; the sideslip axis has ``play`` [deg] that nothing declares.
+
+    ``also`` are further speeds [m/s] at which sweeps are run again, and the tyre there; those whose names begin with ``only``.
+    """
     rng = np.random.default_rng(seed)
     lines = [PROJECT]
-    for name, (alpha, gamma, Fz) in sweeps().items():
-        Fy, Mz = tyre.forces(np.radians(alpha), np.radians(gamma), Fz)
+    plan = [(10.0, tyre, name, *at) for name, at in sweeps().items()]
+    plan += [
+        (V, there, f"{name}_{V:g}", *at)
+        for V, there in also.items()
+        for name, at in sweeps().items()
+        if name.startswith(only)
+    ]
+    for V, there, name, alpha, gamma, Fz in plan:
+        Fy, Mz = there.forces(np.radians(alpha), np.radians(gamma), Fz)
         table = {
-            "alpha_deg": alpha + 0.5 * play * np.sign(Mz), "gamma_deg": gamma, "Fz_N": Fz, "p_kPa": 250.0, "V_mps": 10.0,
+            "alpha_deg": alpha + 0.5 * play * np.sign(Mz), "gamma_deg": gamma, "Fz_N": Fz, "p_kPa": 250.0, "V_mps": V,
             "Fy_N": Fy + FY * rng.standard_normal(len(Fy)), "Mz_Nm": Mz + MZ * rng.standard_normal(len(Fy)),
             "u_Fy_N": FY, "u_Mz_Nm": MZ,
         }  # fmt: skip

@@ -1,7 +1,7 @@
 """Records of modelled influences for report and result.json: differences between runs, and the file at one temperature."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,6 +10,7 @@ from mffit.as_json import keys
 from mffit.fit import agreement
 from mffit.fit.agreement import Agreement
 from mffit.fit.coefficients import Coefficient
+from mffit.fit.fitted import Fitted
 from mffit.fit.influences.nuisance_choice import Gaps
 from mffit.fit.influences.nuisances import of_run
 from mffit.fit.influences.with_nuisances import NuisanceFit
@@ -18,7 +19,7 @@ from mffit.linearised import LinearisedFit
 from mffit.points import Points
 from mffit.prediction import Predictor, predictor
 from mffit.rig import Simulation
-from mffit.rig_errors import OF_RUN, T_REF, rig_estimates
+from mffit.rig_errors import BESIDE, OF_RUN, P_REF, T_REF, V_REF, rig_estimates
 from mffit.scatter import ALARM
 from tir.temperature import SCALED_BY
 
@@ -51,7 +52,7 @@ def between_runs(found: NuisanceFit, points: Points) -> BetweenRuns | None:
     runs = tuple(dict.fromkeys(name.partition(OF_RUN)[2] for name in own))
     # The relative uncertainty of a standard deviation from n values, to first order.
     share = 1.0 / math.sqrt(2.0 * len(runs))
-    rest = without_runs(full.simulation).readings(points, full.problem.channels)
+    rest = as_written(full).readings(points, full.problem.channels)
     return BetweenRuns(
         runs=runs,
         scatter={name: (value, share * value) for name, value in found.choice.scatter.items()},
@@ -63,6 +64,51 @@ def between_runs(found: NuisanceFit, points: Points) -> BetweenRuns | None:
 def without_runs(simulation: Simulation) -> Simulation:
     """The simulation with the random effects of all runs set to zero."""
     return simulation.with_numbers(dict.fromkeys(filter(of_run, simulation.of_parts), 0.0))
+
+
+@dataclass(frozen=True, slots=True)
+class OverSpeed:
+    """Terms of grip and stiffness over the speed, of which the files hold at one."""
+
+    V_ref: float  #: speed at which the files hold [m/s]
+    V_range: tuple[float, float]  #: tested speeds [m/s]
+    terms: Mapping[str, tuple[float, float]]  #: term -> (value, standard error) [s/m]
+    alone: Mapping[str, Agreement]
+    """By channel, agreement of the file, which has no term, with the points of all speeds."""
+
+
+keys(
+    OverSpeed,
+    "V_ref_mps=V_ref V_min_mps=V_range.0 V_max_mps=V_range.1 terms without_terms=alone",
+    terms=lambda found: rig_estimates(found.terms),
+)
+
+
+def over_speed(found: NuisanceFit, points: Points) -> OverSpeed | None:
+    """The record of the terms of speed; None if the fit has none."""
+    full = found.full
+    terms = {e.name: full.rig[e.name] for e in BESIDE if e.counts_from == V_REF and e.name in full.rig}
+    if not terms:
+        return None
+    rest = as_written(full).readings(points, full.problem.channels)
+    return OverSpeed(
+        V_ref=full.problem.value(V_REF),
+        V_range=(float(np.min(points.V)), float(np.max(points.V))),
+        terms=terms,
+        alone=agreement.with_points(rest, points),
+    )
+
+
+def as_written(fitted: Fitted) -> Simulation:
+    """The simulation of a fit without what its file has not: random effects of runs and terms beside the formula."""
+    return without_runs(without_terms(fitted, [P_REF, V_REF]))
+
+
+def without_terms(fitted: Fitted, references: Sequence[str]) -> Simulation:
+    """The simulation of a fit without its terms beside the formula that count from these reference conditions."""
+    return fitted.simulation.with_numbers(
+        {e.name: e.undisturbed for e in BESIDE if e.counts_from in references and e.name in fitted.rig}
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,7 @@ from mffit.least_squares import FreeNumber, solve
 from mffit.left_out import clearly_above_zero
 from mffit.linearised.inputs import word_of
 from mffit.points import Points, levels
-from mffit.rig_errors import T_REF
+from mffit.rig_errors import P_REF, T_REF, V_REF
 from mffit.suspicion import parts_of_sweeps
 
 Gaps = Mapping[str, float]
@@ -141,9 +141,12 @@ def reference_temperature(config: Config, points: Points) -> float:
 
 
 def at_reference(config: Config, problem: FitProblem) -> FitProblem:
-    """The problem with the points' mean pressure and, if measured, their reference temperature as reference conditions."""
+    """The problem with the conditions at which its model holds: the points' mean pressure, the tested speed next to the nominal
+    one and, if measured, the reference temperature.
+    """
     points = problem.points
-    reference = {"p_ref_kPa": round(float(np.mean(points.p)) / 1e3, 1)}
+    speed = float(np.clip(config.tyre.nominal_speed, points.V.min(), points.V.max()))
+    reference = {P_REF: round(float(np.mean(points.p)) / 1e3, 1), V_REF: round(speed, 1)}
     if np.any(np.isfinite(points.T)):
         reference[T_REF] = reference_temperature(config, points)
     return problem.with_values(reference)

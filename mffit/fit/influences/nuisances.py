@@ -92,6 +92,10 @@ def _slips(points: Points) -> str:
     return "" if np.any(driven) else "no sweep varies longitudinal slip"
 
 
+def _speeds(points: Points) -> str:
+    return "" if levels.count(points.V, levels.SPEED) > 1 else "a single speed was run"
+
+
 def _pressures_of_moment(points: Points) -> str:
     if not np.any(np.isfinite(points.Mx)):
         return "Mx_Nm was not measured"
@@ -215,6 +219,21 @@ NUISANCES = (
         numbers=("k_T_drive_grip_per_K", "k_T_slip_stiffness_per_K"),
         lacking=lambda points: _temperatures(points) or _slips(points),
         after=TEMPERATURE,
+    ),
+    Nuisance(
+        id="speed",
+        name="grip and stiffness over speed",
+        key="speed",
+        numbers=("k_V_grip_per_mps", "k_V_stiffness_per_mps"),
+        lacking=_speeds,
+    ),
+    Nuisance(
+        id="speed-slip",
+        name="longitudinal friction and slip stiffness over speed",
+        key="speed",
+        numbers=("k_V_drive_grip_per_mps", "k_V_slip_stiffness_per_mps"),
+        lacking=lambda points: _speeds(points) or _slips(points),
+        after="speed",
     ),
     Nuisance(
         id="pressure-arm",

@@ -27,12 +27,17 @@ SIZES = {
     "gain": 1.03,
     "T_ref_degC": 40.0,
     "p_ref_kPa": 180.0,
+    "V_ref_mps": 8.0,
     "backlash_deg": 0.3,
     "crosstalk_Fx_Mz_m": 0.02,
     "crosstalk_Fx_Mx_m": 0.02,
 }
 """Sizes of those whose double usual size would be no sensible one."""
-BESIDE = {"T_ref_degC": {"k_T_per_K": 0.002}, "p_ref_kPa": {"k_p_arm_per_kPa": 1e-3}}
+BESIDE = {
+    "T_ref_degC": {"k_T_per_K": 0.002},
+    "p_ref_kPa": {"k_p_arm_per_kPa": 1e-3},
+    "V_ref_mps": {"k_V_per_mps": 0.005},
+}
 """What an error needs beside it to show."""
 
 
@@ -114,7 +119,7 @@ def test_the_comparison_would_see_a_wrong_sign_or_size(tyre, settings, name):
     """Half the error, or its reverse, is far outside the tolerance of the comparison."""
     beside, undisturbed = BESIDE.get(name, {}), BY_NAME[name].undisturbed
     if math.isnan(undisturbed):
-        undisturbed = {"path_radius_m": R, "p_ref_kPa": 1e-3 * tyre["NOMPRES"]}[name]
+        undisturbed = {"path_radius_m": R, "p_ref_kPa": 1e-3 * tyre["NOMPRES"], "V_ref_mps": 6.0}[name]
     whole = by_the_chain(tyre, settings, **{name: size(name), **beside})
     for share in (0.5, -1.0):
         value = undisturbed + share * (size(name) - undisturbed)
