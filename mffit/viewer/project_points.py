@@ -116,7 +116,10 @@ def _bands(felt: Points, n: int, fitted: FitResult | None) -> dict[str, dict[str
         return {}
     rows = np.unique(np.linspace(0, n - 1, min(n, constants.POINTS_OF_BANDS)).astype(int))
     tyre = Simulation.of(fitted.tyre, turn_slip=fitted.simulation.turn_slip)
-    found = fitted.prediction.forces(tyre, tyre, felt.select(rows, with_table=False))
+    at = felt.select(rows, with_table=False)
+    if fitted.speed is not None:  # the readings are shown as at the speed of the file
+        at = at.replace(V=np.full(len(rows), fitted.speed.V_ref))
+    found = fitted.prediction.forces(tyre, tyre, at)
     return {
         "band": {"rows": rows},
         "missed": {name: rounded(one.best - one.file, BITS_OF_BANDS) for name, one in found.items()},

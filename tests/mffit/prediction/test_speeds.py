@@ -11,6 +11,7 @@ import pandas as pd
 import pytest
 from conftest import Built, build
 
+import mffit
 import tir
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.scatter import rms
@@ -123,6 +124,15 @@ def test_what_the_file_says_of_other_speeds_is_the_tyre_there(tested):
         rms(tyre(conditions.Fz_N.to_numpy(), alpha, gamma).Fy - true(FAST)) for tyre in (file, there)
     )
     assert corrected < 0.5 * off
+
+
+def test_a_comparison_takes_the_file_to_the_speed_of_every_reading(tested):
+    """The fast sweep is as near to the file as the slow one of the same conditions, 15 m/s of speed apart."""
+    folder = tested.changes.folder
+    found = mffit.compare(folder / "brush.tir", folder.parent / "tyre.toml")
+    off = {one.sweep: one.rms for one in found.sweeps if one.channel == "Fy"}
+    assert off["sideslip_2600_25"] < 1.3 * off["sideslip_2600"]
+    assert any("brush.tir holds at 10 m/s" in note for note in found.notes)
 
 
 def test_a_tyre_without_it_gets_no_term(tested):
