@@ -142,6 +142,8 @@ def purposes(result: BuildResult) -> dict[str, str]:
         text = FOR.get(use, use)
         if use == "normal" and "turn-slip" not in result.files:
             text = "simulators with turn slip off (USE_MODE {mode:.0f})"
+        if result.fit.speed is not None:
+            text += f"; holds at {result.fit.speed.V_ref:g} m/s"
         if use in result.tyres and lacks_fx(result.tyres[use]):
             text += f"; {NO_FX}"
         found.setdefault(name, text.format(mode=mode, T=warm.T_ref if warm else 0.0))

@@ -113,25 +113,16 @@ class Chain:
         """Radius (n,) of each path less that of the usual one [m]."""
         return path_radii(self.points) - self._usual_radius
 
-    @cached_property
-    def warmth(self) -> Any:
-        """Temperature above the reference (n,) [K]; 0 where it was not measured."""
-        known = np.isfinite(self.points.T)
-        return np.where(known, np.nan_to_num(self.points.T) - self.numbers[T_REF], 0.0)
+    def above(self, reference: str) -> Any:
+        """What the temperature [K], speed [m/s] or pressure [kPa] exceeds its ``reference`` by (n,); 0 where it is unknown.
 
-    @cached_property
-    def speed_above_reference(self) -> Any:
-        """Speed above that at which the model holds, the most frequent one unless stated (n,) [m/s]; 0 where it is unknown."""
-        stated, V = self.numbers[V_REF], self.points.V
-        reference = self._history.usual_speed if np.isnan(plain(stated)) else stated
-        return np.where(np.isfinite(V), np.nan_to_num(V) - reference, 0.0)
-
-    @property
-    def pressure_above_reference(self) -> Any:
-        """Pressure above that at which the coefficients hold (n,) [kPa]."""
-        reference = self.numbers[P_REF]
-        nominal = 1e-3 * self._coefficients["NOMPRES"]
-        return 1e-3 * self.points.p - (nominal if np.isnan(reference) else reference)
+        A reference speed that is not stated is the most frequent one, a pressure NOMPRES.
+        """
+        stated, points = self.numbers[reference], self.points
+        here = {T_REF: points.T, V_REF: points.V, P_REF: 1e-3 * points.p}[reference]
+        if np.isnan(plain(stated)):
+            stated = self._history.usual_speed if reference == V_REF else 1e-3 * self._coefficients["NOMPRES"]
+        return np.where(np.isfinite(here), np.nan_to_num(here) - stated, 0.0)
 
     @cached_property
     def time(self) -> np.ndarray:

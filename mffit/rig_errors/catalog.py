@@ -5,7 +5,7 @@ from importlib import resources
 from typing import Any
 
 from mffit.rig_errors import constants
-from mffit.rig_errors.formulae import CALIBRATES, CAMBER_STIFFNESS, FORCE_AT_ZERO, FORMULAE
+from mffit.rig_errors.formulae import CALIBRATES, CAMBER_STIFFNESS, FORCE_AT_ZERO, FORMULAE, over
 from mffit.rig_errors.record import BEFORE_THE_TYRE, Appearance, Declared, Place, RigError
 
 P_REF, T_REF, V_REF = "p_ref_kPa", "T_ref_degC", "V_ref_mps"
@@ -27,7 +27,8 @@ def rig_error(name: str, row: dict[str, Any]) -> RigError:
             camber_stiffness=CAMBER_STIFFNESS.get(name),
             calibrates=CALIBRATES.get(name),
         )
-    return RigError(name=name, formula=FORMULAE.get(name), **fields)
+    formula = FORMULAE.get(name) or (over(fields["counts_from"]) if "counts_from" in fields else None)
+    return RigError(name=name, formula=formula, **fields)
 
 
 def _values(row: dict[str, Any]) -> dict[str, Any]:

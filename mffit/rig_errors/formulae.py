@@ -27,14 +27,15 @@ def turned(zero: Any, angle: Any, at: Any) -> Any:
     return angle + zero * RADIANS
 
 
-def warmed(k: Any, value: Any, at: Any) -> Any:
-    """A force or a scaling factor times 1 + k (T - T_ref)."""
-    return value * (1.0 + k * at.warmth)
+def over(reference: str) -> Formula:
+    """A force or a scaling factor times 1 + k (x - x_ref), x the condition of the ``reference``."""
+    return lambda k, value, at: value * (1.0 + k * at.above(reference))
 
 
-def sped(k: Any, value: Any, at: Any) -> Any:
-    """A force or a scaling factor times 1 + k (V - V_ref)."""
-    return value * (1.0 + k * at.speed_above_reference)
+def bent(k2: Any, value: Any, at: Any) -> Any:
+    """A scaling factor with the linear term of temperature, with the quadratic one too."""
+    warmer = at.above("T_ref_degC")
+    return value * (1.0 + k2 * warmer**2 / (1.0 + at.numbers["k_T_grip_per_K"] * warmer))
 
 
 def changed(share: Any, value: Any, at: Any) -> Any:
@@ -58,19 +59,8 @@ FORMULAE: dict[str, Formula] = {
     "path_radius_m": lambda radius, phi_t, at: np.sign(phi_t) / (radius + at.beyond_usual_path),
     "crown_m": lambda crown, phi_t, at: phi_t / (1.0 - crown * phi_t * np.sin(at.gamma)),
     "kappa_0": added,
-    "k_T_grip_per_K": warmed,
-    "k_T_grip_per_K2": lambda k2, value, at: (
-        value * (1.0 + k2 * at.warmth**2 / (1.0 + at.numbers["k_T_grip_per_K"] * at.warmth))
-    ),
-    "k_T_stiffness_per_K": warmed,
-    "k_T_camber_per_K": warmed,
-    "k_T_drive_grip_per_K": warmed,
-    "k_T_slip_stiffness_per_K": warmed,
-    "k_V_grip_per_mps": sped,
-    "k_V_stiffness_per_mps": sped,
-    "k_V_drive_grip_per_mps": sped,
-    "k_V_slip_stiffness_per_mps": sped,
-    "k_p_arm_per_kPa": lambda k, QSX3, at: QSX3 + k * at.pressure_above_reference,
+    "k_T_grip_per_K2": bent,
+    "k_p_arm_per_kPa": lambda k, QSX3, at: QSX3 + k * at.above("p_ref_kPa"),
     "run_grip": changed,
     "run_stiffness": changed,
     "sweep_heating": lambda change, value, at: value * (1.0 + change * at.along_sweep),
@@ -81,11 +71,9 @@ FORMULAE: dict[str, Formula] = {
     "hysteresis_deg": lambda width, alpha, at: alpha - width * (RADIANS * at.sense),
     "compliance_deg_per_Nm": lambda give, alpha, at: at.turned_by_moment(alpha, give * RADIANS),
     "backlash_deg": lambda play, alpha, at: at.held_in_play(alpha, 0.5 * RADIANS * play),
-    "k_T_per_K": warmed,
     "k_t_per_s": lambda k, force, at: force * (1.0 + k * at.time),
     "wear_per_km": lambda wear, force, at: force * (1.0 + wear * at.distance_km),
     "warm_up": lambda share, force, at: force * (1.0 - share * np.exp(-at.distance_km)),
-    "k_V_per_mps": sped,
     "gain": scaled,
     "gain_Mx": scaled,
     "gain_My": scaled,
@@ -105,7 +93,7 @@ FORMULAE: dict[str, Formula] = {
     "Mx0_Nm": added,
     "My0_Nm": added,
 }
-"""By name of the error; references such as ``T_ref_degC`` have none."""
+"""By name of the error; references such as ``T_ref_degC`` have none, others that count from one have :func:`over` it."""
 FORCE_AT_ZERO: dict[str, Callable[[Any, AtZero], Any]] = {
     "alpha_0_deg": lambda force, at: force,
     "backlash_deg": lambda play, at: 0.5 * RADIANS * at.C_alpha * at.side_of_play * play,

@@ -222,14 +222,14 @@ NUISANCES = (
     ),
     Nuisance(
         id="speed",
-        name="grip and stiffness over speed",
+        name="change of friction and cornering stiffness with speed",
         key="speed",
         numbers=("k_V_grip_per_mps", "k_V_stiffness_per_mps"),
         lacking=_speeds,
     ),
     Nuisance(
         id="speed-slip",
-        name="longitudinal friction and slip stiffness over speed",
+        name="change of longitudinal friction and slip stiffness with speed",
         key="speed",
         numbers=("k_V_drive_grip_per_mps", "k_V_slip_stiffness_per_mps"),
         lacking=lambda points: _speeds(points) or _slips(points),
