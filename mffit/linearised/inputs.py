@@ -15,7 +15,7 @@ from mffit.quantities import COLUMNS, CONDITIONS, REVERSED_BY_HALF_A_TURN
 from tir.constants import SMALLEST_LOAD
 
 LEVELS = {name: kind for name, kind in levels.KINDS.items() if name != "V"}
-"""Settings of a test plan over which the model error varies, and the tolerance of their levels."""
+"""Settings of a test plan of which each combination counts, and the tolerance of their levels."""
 OTHER_WORDS: Mapping[str, str] = {
     "phi_t": "path curvature",
     "mount": "mount of the tyre or direction of rolling",
@@ -120,7 +120,7 @@ def inputs_of(points: Points) -> tuple[Input, ...]:
     """
     mirrored, points = points.curved, forwards(points)
     found = []
-    for name, kind in LEVELS.items():
+    for name, kind in levels.KINDS.items():
         values = getattr(points, name)
         steps = levels.count(values, kind) - 1
         if steps < 1:

@@ -223,9 +223,13 @@ class Predictor(ReadOnlyArrays):
         ]
         return {name: _mixed([one[name] for one in each]) for name in names}
 
+    @property
+    def follows_speed(self) -> bool:
+        """Whether the best estimate changes with the speed, which is then held to the tested ones."""
+        return V_REF in self.beside or "V" in self._shown
+
     def _held(self, points: Points) -> Points:
-        """The points with their speeds held to the tested ones, if the tyre changes with the speed."""
-        return points.replace(V=np.clip(points.V, *self.V_range)) if V_REF in self.beside else points
+        return points.replace(V=np.clip(points.V, *self.V_range)) if self.follows_speed else points
 
     def _usual_temperatures(self) -> tuple[float, ...]:
         """Temperatures [degC] over which a prediction that states none averages."""
@@ -375,6 +379,7 @@ class Predictor(ReadOnlyArrays):
 
     def points(self, tyre: Tyre, conditions: pd.DataFrame) -> Points:
         """The conditions as points; a missing temperature is NaN, other missing conditions get nominal values."""
+        speed = float(tyre["LONGVL"])
 
         def stated(name: str, otherwise: float) -> np.ndarray:
             if name not in conditions:
@@ -388,7 +393,7 @@ class Predictor(ReadOnlyArrays):
             stated("Fz_N", np.nan),
             kappa=stated("kappa", 0.0),
             p=stated("p_kPa", float(tyre["NOMPRES"])),
-            V=stated("V_mps", float(tyre["LONGVL"])),
+            V=stated("V_mps", float(np.clip(speed, *self.V_range)) if self.follows_speed else speed),
             phi_t=stated(PATH, self.path) if self.curved else 0.0,
             T=stated("T_degC", np.nan),
         )

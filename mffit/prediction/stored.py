@@ -28,7 +28,6 @@ from mffit.prediction.conditions import PATH, checked, read_conditions
 from mffit.prediction.predictor import MissedChannel, Predictor
 from mffit.quantities import CHANNELS, COLUMNS
 from mffit.rig_errors import BY_NAME as ERROR_OF
-from mffit.rig_errors import V_REF
 from tir import TirWarning, Tyre
 from tir.envelope import RANGES
 from tir.errors import counted, listed
@@ -168,7 +167,7 @@ def _beyond_ranges(known: Predictor, tyre: Tyre, table: pd.DataFrame) -> Iterato
     if "V_mps" in table:
         points = points.replace(V=table["V_mps"].to_numpy(dtype=float))
         ranges["V_mps"], words["V_mps"] = known.V_range, ("the tested speeds", of_file[1])
-        if V_REF in known.beside:
+        if known.follows_speed:
             words["V_mps"] = "the tested speeds", nearest
     if known.T_range is not None:
         ranges["T_degC"] = known.T_range

@@ -120,7 +120,8 @@ def test_both_files_and_the_terms_are_where_a_program_looks(warmed):
     modelled = {row["id"]: row["modelled"] for row in content["fit"]["modelled"]}
     assert modelled == {
         "temperature": True, "temperature-curvature": False, "temperature-camber": True, "hysteresis": False, "lag": False,
-        "warm-up": False, "wear": False, "temperature-slip": False, "pressure-arm": False, "run-scale": False,
+        "warm-up": False, "wear": False, "temperature-slip": False, "speed": False, "speed-slip": False,
+        "pressure-arm": False, "run-scale": False,
     }  # fmt: skip
     with pytest.raises(tir.TirError, match="no temperature terms"):
         tir.read(folder / "small.tir").at_temperature(30.0)
