@@ -458,12 +458,12 @@ def predictor(
         error = error_of(number)
         if error in ZEROS and number not in known and abs(value) >= abs(zeros.get(error.name, 0.0)):
             zeros[error.name] = value
-    # Numbers of the tyre, and rig errors that a further run shares with the readings: calibrations and lasting zeros.
+    # Coefficients, terms of speed, and rig errors that a further run shares with the readings: calibrations and lasting zeros.
     kept = [
         i
         for i, n in enumerate(left.numbers)
         if (error := error_of(n.name)) is None
-        or (n.name == error.name and (error.has_prior or error in BESIDE))
+        or (n.name == error.name and (error.has_prior or error.counts_from == V_REF))
     ]
     spread = {
         i: 0.0 if number.name in known else number.spread
