@@ -141,7 +141,7 @@ def _u_of_slopes(
             heading = COLUMNS[by.over]
             ends = of_si(heading) * STEP * np.array([-1.0, 1.0])
             at = pd.DataFrame(still | {heading: ends})
-            u[key] = predictor.u_between(tyre, at, by.channel, at_zero=True) / (2.0 * STEP)
+            u[key] = predictor.u_between(tyre, at, by.channel) / (2.0 * STEP)
     of_trail = [
         u.get(key, 0.0) / found[key] for key in ("C_alpha_N_per_rad", "C_Mz_alpha_Nm_per_rad") if found[key]
     ]

@@ -101,6 +101,7 @@ BUMP_WIDTHS_SLIP = Series(
     (0.01, 0.03), "-", "Widths of bumps over longitudinal slip: a tenth and a third of the slip at the peak."
 )
 MOST_BUMP_CENTRES = Count(41, "-", "Most centres of bumps along one angle.")
+CURVES = Count(300, "-", "Most curves of smooth structure that nobody named.")
 SMOOTH_AMPLITUDES = Series(
     (0.001, 0.3), "-", "Smallest and largest smooth amplitude over the channel's size."
 )

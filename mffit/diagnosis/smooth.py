@@ -12,10 +12,10 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from mffit.diagnosis import constants
+from mffit.diagnosis.cosines import cosines
 from mffit.diagnosis.noise import Noise
 from mffit.linearised.gaussian import Directions, Informed
 from mffit.linearised.inputs import Input
-from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
 from mffit.rig import Readings
 from mffit.scatter import rms
@@ -55,7 +55,7 @@ def smooth_basis(
     """
     inputs, at = _conditions(points, divisions)
     angles = sum(one.name in ANGLES for one in inputs)
-    shapes, gains = _functions(inputs, at), _functions(inputs[angles:], at[:, angles:])[:, 1:]
+    shapes, gains = cosines(inputs, at), cosines(inputs[angles:], at[:, angles:])[:, 1:]
     rows = []
     for name, model in simulated.items():
         size = float(np.nan_to_num(rms(points.channel(name))))
@@ -77,14 +77,6 @@ def _conditions(points: Points, divisions: float) -> tuple[tuple[Input, ...], np
             inputs.append(Input(name, lower, upper, (upper - lower) / max(min(steps, distinct), 1)))
             at.append(np.where(np.isfinite(x), x, 0.5 * (lower + upper))[:, None])
     return tuple(inputs), np.hstack(at)
-
-
-def _functions(inputs: tuple[Input, ...], at: np.ndarray) -> np.ndarray:
-    """Smooth functions (n, k) of some conditions, the constant first."""
-    functions = SmoothFunctions.over(inputs)
-    share, _ = functions.log_variance(np.array([one.spacing for one in inputs]))
-    found: np.ndarray = functions.columns(at) * np.exp(0.5 * share)
-    return found
 
 
 @dataclass(frozen=True, eq=False)

@@ -143,5 +143,6 @@ class _OfOthers(ReadOnlyArrays):
         # there: the model error is as uncertain as where nothing was read.
         before = np.searchsorted(np.unique(self.place[rows]), self.place[rows])
         end = np.minimum(before, np.max(before, initial=0) - before) < 2
-        spread[end] = np.maximum(spread[end], (self.channel.components.missed / self.unit[rows[end]]) ** 2)
+        unknown = self.channel.components.missed**2 * np.sum(self.columns[rows[end]] ** 2, axis=1)
+        spread[end] = np.maximum(spread[end], unknown)
         return np.asarray(np.abs(error) / np.sqrt(self.noise[rows] ** 2 + spread))

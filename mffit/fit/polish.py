@@ -92,12 +92,13 @@ def with_known_zeros(
 
     One set-up cannot separate a zero from an asymmetry that the formula misses: a free zero absorbs the asymmetry, tens of
     standard uncertainties away from the readings at zero slip. The zeros are therefore estimated together with the model error.
-    Those that the readings tell beside it stay free. If no model error is likely, fit and plan are returned unchanged.
+    Those that the readings tell beside it, and the fit agrees, stay free. If no model error is likely, fit and plan are returned
+    unchanged.
     """
     if left.is_exact:
         return fitted, plan
     spread = {n.name: n.spread for n in plan.rig}
-    found = {name: (change, u) for name, (change, u) in left.zeros.items() if u >= MOST * spread[name]}
+    found = {n: (off, u) for n, (off, u) in left.zeros.items() if u >= MOST * spread[n] or abs(off) > u}
     u = {name: own for name, (_, own) in found.items()}
     plan = replace(
         plan, rig=tuple(n for n in plan.rig if n.name not in found), held_rig={**plan.held_rig, **u}

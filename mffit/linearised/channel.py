@@ -13,7 +13,7 @@ from mffit.linearised import constants
 from mffit.linearised.components import CERTAIN_EVIDENCE, Components, Terms, own_columns
 from mffit.linearised.inputs import Input, along, settings_of, turned
 from mffit.linearised.mixed import FurtherColumns, LeftOutReadings, Mixed, MixedPosterior, Variances
-from mffit.linearised.smooth import SmoothFunctions
+from mffit.linearised.smooth import CONSTANT, SmoothFunctions
 from mffit.points import Points
 from mffit.scatter import rms, robust
 from tir.frozen import ReadOnlyArrays
@@ -36,6 +36,14 @@ class LookedAt(NamedTuple):
     sign: int  #: by which a mirror multiplies the channel
     settings: np.ndarray  #: (n, d) the conditions
     along: np.ndarray  #: (n,) as :func:`mffit.linearised.inputs.along`
+
+    def only(self, rows: np.ndarray) -> LookedAt:
+        """The same of some ``rows`` (k,)."""
+        return self._replace(
+            points=self.points.select(rows, with_table=False),
+            settings=self.settings[rows],
+            along=self.along[rows],
+        )
 
     def with_functions(self, model: Mixed, name: str, smooth: SmoothFunctions, unit: np.ndarray) -> Mixed:
         """A ``model`` of readings of a channel over ``unit`` (n,) with the weights of the functions before its common numbers."""
@@ -114,7 +122,7 @@ class LinearisedChannel(ReadOnlyArrays):
         inputs = self.smooth.inputs
         settings, middle = settings_of(points, inputs), [0.5 * (one.lower + one.upper) for one in inputs]
         settings = np.where(np.isfinite(settings), settings, middle)
-        untold, functions = self.smooth.faded(settings, np.array(self.components.lengths))
+        untold, functions = self.smooth.faded(settings)
         return untold, turned(points, self.name)[:, None] * functions
 
     def told_beside(self, model: Mixed, columns: np.ndarray) -> FurtherColumns:
@@ -147,10 +155,10 @@ class LinearisedChannel(ReadOnlyArrays):
             min(length, one.spacing) if one.is_held else length
             for one, length in zip(self.smooth.inputs, self.components.lengths, strict=True)
         )
-        smooth = SmoothFunctions.over(self.smooth.inputs, self.seen.sign)
+        known = self.components.enough(self.unit)
+        smooth = SmoothFunctions.over(self.smooth.inputs, self.seen.settings, lengths, self.seen.sign, known)
         model = self._with(smooth, self.model)
-        terms = Terms(model, smooth, np.zeros(self.turn.shape[1]))
-        given = terms.variances(replace(self.components, lengths=lengths))
+        given = Terms(model, smooth, np.zeros(self.turn.shape[1])).variances(self.components)
         own, *both = self._left_out(model, given, [rows, *(np.append(rows, one) for one in alike)])
         return [own, *(found.only(one) for found, one in zip(both, alike, strict=True))]
 
@@ -205,7 +213,7 @@ class LinearisedChannel(ReadOnlyArrays):
         """Log evidence if the model error is only a constant."""
         rig = self.alone.model.common[:, len(self.missed) :]
         model = replace(self.alone.model, common=np.hstack([1.0 / self.unit[:, None], rig]))
-        terms = replace(self.alone, model=model, smooth=SmoothFunctions.over(()))
+        terms = replace(self.alone, model=model, smooth=CONSTANT)
         return terms.evidence(terms.most_probable(self.unit))
 
     def _left_out(self, model: Mixed, given: Variances, rows: Sequence[np.ndarray]) -> list[LeftOutReadings]:

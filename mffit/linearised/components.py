@@ -7,12 +7,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from mffit.constants import CERTAIN_SIGMA, FALSE_ALARM
 from mffit.linearised import constants
+from mffit.linearised.gaussian import lower_root
 from mffit.linearised.mixed import Mixed, Variances
 from mffit.linearised.search import Scored, Scoring, SearchedParameter, flat, normal
-from mffit.linearised.smooth import SmoothFunctions
+from mffit.linearised.smooth import SINGULAR, SmoothFunctions
 from mffit.scatter import rms
 from tir.frozen import ReadOnlyArrays
 
@@ -26,7 +28,7 @@ LIKELY_EVIDENCE = -math.log(FALSE_ALARM)
 class Components:
     """Standard deviations and lengths of the variance components, in the unit of the channel unless stated otherwise."""
 
-    missed: float  #: standard deviation of the model error over the slightly widened tested range, a constant included
+    missed: float  #: standard deviation of the model error at the middle load, a constant included
     lengths: tuple[float, ...]  #: length scales of the model error along every input [unit of the input]
     offset: float  #: standard deviation of the runs' offsets
     scale: float  #: standard deviation of the runs' relative scales [-]
@@ -35,11 +37,8 @@ class Components:
     noise: float  #: standard deviation of the noise over the stated one [-]
 
     def over_one_input(self, smooth: SmoothFunctions) -> Iterator[Components]:
-        """Variants in which the model error changes over one input only, and over the curvature of a path as it is."""
-        longest = [
-            length if one.name == "phi_t" else constants.LONGEST_LENGTH * one.width
-            for one, length in zip(smooth.inputs, self.lengths, strict=True)
-        ]
+        """Variants in which the model error changes over one input only, and over the curvature of a path."""
+        longest = [one.longest for one in smooth.inputs]
         for i, length in enumerate(self.lengths):
             yield replace(self, lengths=(*longest[:i], length, *longest[i + 1 :]))
 
@@ -56,6 +55,10 @@ class Components:
         size = [math.exp(one) for one in x]
         return cls(size[0], tuple(size[1:-5]), *size[-5:])
 
+    def enough(self, unit: np.ndarray) -> float:
+        """Share of the variance that functions of the model error need not tell; ``unit`` (n,) is the stated noise."""
+        return (constants.LEFT_OUT * self.noise * float(np.median(unit)) / self.missed) ** 2
+
     def run_variance(self, force: np.ndarray) -> np.ndarray:
         """Variance (n,) of a new run around the mean of all runs, at points with the given force (n,)."""
         of_scale: np.ndarray = (self.scale * force) ** 2
@@ -69,21 +72,17 @@ def own_columns(force: np.ndarray, along: np.ndarray) -> np.ndarray:
     return np.column_stack([np.ones(len(force)), force, waves])
 
 
-def variances(x: np.ndarray, smooth: SmoothFunctions) -> tuple[Variances, np.ndarray, np.ndarray]:
-    """Log variances of all numbers, and the derivatives of the common and the group-specific ones by the log components ``x``."""
-    d, q = len(smooth.inputs), int(constants.FUNCTIONS_OF_A_RUN)
-    share, by_length = smooth.log_variance(np.exp(x[1 : 1 + d]))
-    by_common = np.zeros((len(share), len(x)))
-    by_common[:, 0] = 2.0
-    by_common[:, 1 : 1 + d] = by_length
-    exponent = -0.5 * (np.pi * np.arange(1, q + 1) * np.exp(x[-2])) ** 2
+def own_variances(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Log variances (q,) of the random effects of a run, and their derivatives (q, k) by the log components ``x`` (k,)."""
+    order = np.arange(1, constants.FUNCTIONS_OF_A_RUN + 1)
+    exponent = -0.5 * (np.pi * order * np.exp(x[-2])) ** 2
     total = float(np.log(np.sum(np.exp(exponent))))
     own = np.concatenate([2.0 * x[-5:-3], 2.0 * x[-3] + exponent - total])
     by_own = np.zeros((len(own), len(x)))
     by_own[0, -5] = by_own[1, -4] = 2.0
     by_own[2:, -3] = 2.0
     by_own[2:, -2] = 2.0 * (exponent - np.exp(exponent - total) @ exponent)
-    return Variances(2.0 * x[0] + share, own, 2.0 * float(x[-1])), by_common, by_own
+    return own, by_own
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,16 +97,22 @@ class Terms(ReadOnlyArrays):
     further: np.ndarray  #: log variances of the further numbers
 
     def variances(self, of: Components) -> Variances:
-        """The prior variances."""
-        return self._with_slopes(of.logarithms)[0]
+        """The prior variances; they hold for the lengths of ``smooth``."""
+        x, m = of.logarithms, len(self.smooth.nodes)
+        return Variances(
+            np.append(np.full(m, 2.0 * x[0]), self.further), own_variances(x)[0], 2.0 * float(x[-1])
+        )
 
     def evidence(self, of: Components) -> float:
         """Log evidence of components."""
-        return self.model.evidence(self.variances(of)).value
+        root = lower_root(self.smooth.at_nodes(np.array(of.lengths))[0])
+        return self.model.evidence(self.variances(of), self._turn(root)).value
 
-    def _with_slopes(self, x: np.ndarray) -> tuple[Variances, np.ndarray, np.ndarray]:
-        given, by_common, by_own = variances(x, self.smooth)
-        return given._replace(common=np.append(given.common, self.further)), by_common, by_own
+    def _turn(self, root: np.ndarray) -> np.ndarray:
+        """Matrix that turns the columns into those of functions with another ``root`` (m, m) of their values at the nodes."""
+        turn = np.eye(len(root) + len(self.further))
+        turn[: len(root), : len(root)] = solve_triangular(self.smooth.root, root, lower=True)
+        return turn
 
     def most_probable(
         self, unit: np.ndarray, near: Components | None = None, most_noise: float = 1e3
@@ -139,13 +144,27 @@ class Terms(ReadOnlyArrays):
 
     def _scored(self, x: np.ndarray) -> Scored:
         """Log evidence at the log components (k,)."""
-        given, by_common, by_own = self._with_slopes(x)
-        found, m = self.model.evidence(given), len(by_common)
-        slope = found.common[:m] @ by_common + found.own @ by_own
-        information = by_common.T @ found.of_common[:m, :m] @ by_common + by_own.T @ found.of_own @ by_own
+        at, (_, by_own), m = Components.of_logarithms(x), own_variances(x), len(self.smooth.nodes)
+        alike, by_lengths = self.smooth.at_nodes(np.array(at.lengths))
+        root = lower_root(alike)
+        found = self.model.evidence(self.variances(at), self._turn(root))
+        back = solve_triangular(root, np.eye(m), lower=True)
+        pull = back.T @ found.common[:m, :m] @ back
+        told = lower_root(found.told[:m, :m] + SINGULAR * np.eye(m))
+        probes = told @ _signs(m)
+        aside, moved, slope = back.T @ probes, np.zeros((len(x), probes.size)), found.own @ by_own
+        moved[0], slope[0] = (2.0 * told.T @ probes).ravel(), 2.0 * np.trace(found.common[:m, :m])
+        for i, one in enumerate(by_lengths, start=1):
+            moved[i], slope[i] = (told.T @ (back @ (one @ aside))).ravel(), np.sum(pull * one)
+        information = by_own.T @ found.of_own @ by_own + 0.5 / probes.shape[1] * moved @ moved.T
         slope[-1] += 2.0 * found.noise
         information[-1, -1] += 4.0 * found.of_noise
         return Scored(found.value, slope, information)
+
+
+def _signs(m: int) -> np.ndarray:
+    """Signs (m, k) drawn at random, of which products have the trace of a matrix (m, m) as their mean."""
+    return np.sign(np.random.default_rng(0).standard_normal((m, int(constants.PROBES))))
 
 
 def _parameters(smooth: SmoothFunctions, misfit: float, most_noise: float) -> list[SearchedParameter]:
@@ -162,9 +181,7 @@ def _parameters(smooth: SmoothFunctions, misfit: float, most_noise: float) -> li
         prior = normal(at, math.log(constants.USUAL_RATIO)) if known else flat
         return SearchedParameter(at, math.log(lower), math.log(upper), prior)
 
-    lengths = (
-        around(2.0 * one.spacing, one.spacing, constants.LONGEST_LENGTH * one.width) for one in smooth.inputs
-    )
+    lengths = (around(one.usual_length, one.shortest, one.longest) for one in smooth.inputs)
     return [
         around(misfit, tiny, 3.0 * misfit, known=False),  # missed
         *lengths,

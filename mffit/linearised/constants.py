@@ -5,13 +5,12 @@ from __future__ import annotations
 from tir.constant import Count, Real, Series
 
 FUNCTIONS = Count(600, "-", "Most functions of the model error of a channel.")
-FUNCTIONS_AT_FIRST = Count(300, "-", "The same while its lengths are not known, or if it is less than noise.")
+READINGS_AT_FIRST = Count(300, "-", "Most readings that are looked at while its lengths are not known.")
 LEFT_OUT = Real(
     0.3,
     "-",
     "Standard deviation of what further functions would add, over the noise, below which they are left out.",
 )
-CHOSEN_FOR = Real(0.5, "-", "Lengths, over the likely ones, for which the functions are chosen.")
 POINTS_EXAMINED = Count(
     4000, "-", "Most readings of a channel that are looked at: many more of one sweep tell nothing new."
 )
@@ -57,6 +56,9 @@ LONGEST_LENGTH = Real(
     20.0, "-", "Largest length of smooth functions over the tested range: along it they are constant."
 )
 SEARCH_STEPS = Count(60, "-", "Most steps of a search for the most probable parameters.")
+PROBES = Count(
+    10, "-", "Random directions from which a search estimates how much readings tell of its parameters."
+)
 SEARCH_TOLERANCE = Real(0.05, "-", "Gain of log evidence by a step at which such a search ends.")
 EVIDENCE_STEP = Real(
     0.1, "-", "Step of a logarithm for the differences of slopes that give the width of its distribution."

@@ -191,7 +191,7 @@ def _channel(
         groups=[own for own in (g[known[g]] for g in groups) if len(own)],
     )
     terms, components = _likely(alone, declared, seen, name, unit, sight.near.get(name))
-    missed = terms.model.common[:, : len(terms.smooth.orders)]
+    missed = terms.model.common[:, : len(terms.smooth.nodes)]
     turn = _turn(sight.numbers, (slopes / sigma[rows][:, None])[known], stride)
     return LinearisedChannel(
         name=name,
@@ -217,23 +217,28 @@ def _likely(
     unit: np.ndarray,
     near: Components | None,
 ) -> tuple[Terms, Components]:
-    """The terms with the smooth functions that matter at the likely lengths, and the components of the largest evidence.
+    """The terms with smooth functions of the likely lengths, and the components of the largest evidence.
 
     ``alone`` has no smooth functions; its residuals are over ``unit`` (n,). Without ``near``, the linear model of a similar
-    fit, the functions of the shortest lengths find the lengths: a model error that hardly changes over some conditions leaves
-    more functions to the others.
+    fit, some readings find the lengths, each of them a node.
     """
 
-    def over(lengths: Sequence[float] | None, negligible: float = 0.0) -> Terms:
-        smooth = SmoothFunctions.over(seen.inputs, seen.sign, lengths, negligible)
+    def of(smooth: SmoothFunctions) -> Terms:
         return Terms(seen.with_functions(alone, name, smooth, unit), smooth, declared)
 
     if near is not None and len(near.lengths) != len(seen.inputs):
         near = None  # one of both fits rejects every reading in which a condition varies
-    begin = over(None).most_probable(unit) if near is None else near
-    noise = begin.noise * float(np.median(unit))
-    terms = over(begin.lengths, (constants.LEFT_OUT * noise / begin.missed) ** 2)
-    return terms, terms.most_probable(unit, begin)
+    if near is None:
+        rows = np.concatenate(list(alone.groups))
+        some = rows[np.unique(np.linspace(0, len(rows) - 1, int(constants.READINGS_AT_FIRST)).astype(int))]
+        part, usual = seen.only(some), [one.usual_length for one in seen.inputs]
+        every = SmoothFunctions.with_all(seen.inputs, part.settings, usual, seen.sign)
+        terms = Terms(part.with_functions(alone.only(some), name, every, unit[some]), every, declared)
+        near = terms.most_probable(unit[some])
+    enough = near.enough(unit)
+    terms = of(SmoothFunctions.over(seen.inputs, seen.settings, near.lengths, seen.sign, enough))
+    found = terms.most_probable(unit, near)
+    return of(replace(terms.smooth, lengths=np.array(found.lengths))), found
 
 
 def _missed(terms: Terms, rig: Sequence[Uncertain], components: Components) -> np.ndarray:
@@ -241,7 +246,7 @@ def _missed(terms: Terms, rig: Sequence[Uncertain], components: Components) -> n
 
     A zero cannot be separated from a constant model error, so the result must go together with the stated zeros.
     """
-    functions = len(terms.smooth.orders)
+    functions = len(terms.smooth.nodes)
     stays = np.array([number.held or error_of(number.name) in ZEROS for number in rig], dtype=bool)
     free = Terms(_beside(terms.model, rig, functions, ~stays), terms.smooth, terms.further[~stays])
     return np.asarray(free.model.posterior(free.variances(components)).mean[:functions])

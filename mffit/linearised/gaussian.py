@@ -16,6 +16,14 @@ from scipy.linalg.lapack import dpotrf, dpotrs, dtrtri
 from tir.frozen import ReadOnlyArrays
 
 
+def lower_root(covariance: np.ndarray) -> np.ndarray:
+    """Lower triangle (m, m) whose product with its transpose is a covariance; faster than numpy's, which copies twice."""
+    root, failed = dpotrf(covariance.T, lower=1)
+    if failed:
+        raise np.linalg.LinAlgError("the covariance is not positive definite")
+    return np.asarray(root)
+
+
 class Directions(NamedTuple):
     """Orthonormal directions along which numbers of unit prior variance change readings whose errors have variance 1."""
 

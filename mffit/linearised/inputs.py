@@ -35,7 +35,7 @@ class Input:
     name: str  #: field of :class:`mffit.points.Points`, or ``sense``
     lower: float  #: lower end of the tested range
     upper: float  #: upper end of the tested range
-    spacing: float  #: distance of neighbouring settings, the shortest length scale
+    spacing: float  #: distance of neighbouring settings
     averaged: tuple[float, ...] = ()
     """Values over which a prediction averages if it does not state the condition; empty if predictions always state it."""
     mirrored: bool = False
@@ -47,23 +47,42 @@ class Input:
         return self.upper - self.lower
 
     @property
+    def usual_length(self) -> float:
+        """Length of a model error along it, if nothing else is known: two spacings, of a :meth:`stretched` one between the ends
+        and zero.
+        """
+        return self.spacing if self.is_stretched else 2.0 * self.spacing
+
+    @property
+    def longest(self) -> float:
+        """Longest length, with which a model error hardly changes; two curvatures of paths do not show that."""
+        return self.usual_length if self.name == "phi_t" else constants.LONGEST_LENGTH * self.width
+
+    @property
     def shown(self) -> tuple[float, float]:
         """The tested range; on both sides of zero what was tested on one, because a tyre is nearly its own mirror image."""
         end = max(-self.lower, self.upper)
         return (-end, end) if self.name in REVERSED else (self.lower, self.upper)
 
-    def settings(self, each: int = 1) -> np.ndarray:
-        """Settings over the tested range, about a spacing apart, or ``each`` part of it."""
-        return np.linspace(self.lower, self.upper, each * round(self.width / self.spacing) + 1)
+    def settings(self) -> np.ndarray:
+        """Settings over the tested range, about a spacing apart."""
+        return np.linspace(self.lower, self.upper, round(self.width / self.spacing) + 1)
 
     def stretched(self, values: np.ndarray) -> np.ndarray:
         """Values of a swept slip on a scale with the same ends that is stretched around zero; others as they are."""
         if not self.is_stretched:
             return values
-        unit = self.width / constants.DIVISIONS_OF_A_SWEEP
-        low, high = np.arcsinh(self.lower / unit), np.arcsinh(self.upper / unit)
-        out: np.ndarray = self.lower + (np.arcsinh(values / unit) - low) / (high - low) * self.width
+        low, high = (np.arcsinh(end / self.spacing) for end in (self.lower, self.upper))
+        out: np.ndarray = self.lower + (np.arcsinh(values / self.spacing) - low) / (high - low) * self.width
         return out
+
+    @property
+    def shortest(self) -> float:
+        """Shortest length of a model error along it: nowhere more than a spacing, also where it is not :meth:`stretched`."""
+        ends = np.array(
+            [[end, end - np.copysign(1e-3 * self.spacing, end)] for end in (self.lower, self.upper)]
+        )
+        return self.spacing * float(np.min(np.abs(np.diff(self.stretched(ends)) / np.diff(ends))))
 
     def strayed(self, values: np.ndarray, known: np.ndarray | None = None) -> np.ndarray:
         """Variance (n,) beyond the range, up to a factor, of a curve whose slope wanders at random; 0 inside and where it is NaN.

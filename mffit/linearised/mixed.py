@@ -36,14 +36,18 @@ class Variances(NamedTuple):
 class MixedEvidence(NamedTuple):
     """Log marginal likelihood of the residuals, up to a constant, its derivatives by :class:`Variances`, and their information.
 
-    That is how fast the derivatives are expected to fall, if neither the kinds of variances nor the groups told of each other.
+    That is how fast the derivatives are expected to fall, if neither the kinds of variances nor the groups told of each other;
+    of covariances, it follows from what is ``told``.
     """
 
     value: float
-    common: np.ndarray  #: (m,)
+    common: np.ndarray
+    """(m, m) derivative by the covariance of the common numbers, over their variances; its diagonal is by their logarithms."""
     own: np.ndarray  #: (q,)
     noise: float
-    of_common: np.ndarray  #: (m, m) information
+    told: (
+        np.ndarray
+    )  #: (m, m) one less the posterior covariance of the common numbers over their prior variances
     of_own: np.ndarray  #: (q, q)
     of_noise: float
 
@@ -90,6 +94,15 @@ class Mixed(ReadOnlyArrays):
         vars(other)["_sums"] = self._sums._replace(**self._sums_of(residual))
         return other
 
+    def only(self, rows: np.ndarray) -> Mixed:
+        """The same model of some ``rows`` (k,), of which groups may have none."""
+        place = np.full(len(self.residual), -1)
+        place[rows] = np.arange(len(rows))
+        groups = [there[there >= 0] for there in (place[g] for g in self.groups)]
+        return Mixed(
+            self.residual[rows], self.common[rows], self.own[rows], [one for one in groups if len(one)]
+        )
+
     def alike(self, common: np.ndarray, noise: float = 0.0) -> Variances:
         """Log variances without random effects, with ``common`` (m,) of the common numbers."""
         return Variances(common, np.full(self.own.shape[1], HELD), noise)
@@ -102,9 +115,10 @@ class Mixed(ReadOnlyArrays):
             out[g] = k
         return out
 
-    def evidence(self, given: Variances) -> MixedEvidence:
-        """The log marginal likelihood for given variances."""
-        found, sums = self.posterior(given), self._sums
+    def evidence(self, given: Variances, turn: np.ndarray | None = None) -> MixedEvidence:
+        """The log marginal likelihood for given variances, of the model whose common columns are ``common @ turn`` (m, m)."""
+        sums = self._sums if turn is None else self._sums.turned(turn)
+        found = sums.posterior(given)
         w, gain = np.exp(-given.noise), found.gain
         own_size = np.exp(given.own)
         alone = np.einsum("gqr,gr->gq", found.own, sums.own_pull)
@@ -117,7 +131,6 @@ class Mixed(ReadOnlyArrays):
         own_variance = np.diagonal(own_covariance, axis1=1, axis2=2)
         square = w * sums.square - found.mean @ found.pull - w * w * np.sum(sums.own_pull * alone)
         scaled = found.scaled
-        share = gain + scaled**2
         own_share = (own_variance + own**2) / own_size
         misfit = square - scaled @ scaled - np.sum(own**2 / own_size)
         effective = np.sum(1.0 - gain) + np.sum(1.0 - own_variance / own_size)
@@ -127,41 +140,17 @@ class Mixed(ReadOnlyArrays):
         own_told = np.eye(len(size)) - own_covariance / np.outer(size, size)
         return MixedEvidence(
             value=-0.5 * float(square + log_size),
-            common=0.5 * (share - 1.0),
+            common=0.5 * (np.outer(scaled, scaled) - told),
             own=0.5 * np.sum(own_share - 1.0, axis=0),
             noise=-0.5 * float(sums.readings - misfit - effective),
-            of_common=0.5 * told**2,
+            told=told,
             of_own=0.5 * np.sum(own_told**2, axis=0),
             of_noise=0.5 * max(float(sums.readings - effective), 0.0),  # but for rounding
         )
 
     def posterior(self, given: Variances) -> MixedPosterior:
         """The posterior of the common numbers for given variances."""
-        sums, w = self._sums, float(np.exp(-given.noise))
-        size, own_size = np.exp(0.5 * given.common), np.exp(0.5 * given.own)
-        inner = np.linalg.cholesky(np.eye(len(own_size)) + w * own_size[:, None] * sums.own * own_size)
-        half = np.swapaxes(np.linalg.inv(inner) * own_size, 1, 2)
-        halfway = np.swapaxes(half, 1, 2) @ sums.across
-        flat = halfway.reshape(sums.own_pull.size, len(size))
-        information = flat.T @ flat  # a product with its own transpose is half the work
-        information *= -w * w
-        information += w * sums.common
-        information *= size[:, None] * size
-        pull = w * sums.pull - w * w * np.einsum("gq,gqr->gr", sums.own_pull, half).ravel() @ flat
-        rounding = ROUNDING * float(np.max(w * np.diag(sums.common) * size**2, initial=0.0))
-        found = Informed.by(information, size * pull, rounding)
-        return MixedPosterior(
-            mean=size * found.mean,
-            root=size[:, None] * found.root,
-            pull=pull,
-            scaled=found.mean,
-            gain=np.einsum("ij,ij->i", found.root, found.root),
-            own=half @ np.swapaxes(half, 1, 2),
-            half=half,
-            halfway=halfway,
-            log_determinant=found.log_determinant
-            + 2.0 * float(np.sum(np.log(np.diagonal(inner, axis1=1, axis2=2)))),
-        )
+        return self._sums.posterior(given)
 
     def further(self, given: Variances, columns: np.ndarray) -> FurtherColumns:
         """The information of the residuals about coefficients of further columns (n, j), with all other numbers marginalised."""
@@ -237,6 +226,42 @@ class _Sums(NamedTuple):
     own_pull: np.ndarray  #: (groups, q)
     square: float
     readings: int
+
+    def turned(self, turn: np.ndarray) -> _Sums:
+        """The sums of the columns ``common @ turn`` (m, m)."""
+        common, pull = turn.T @ self.common @ turn, turn.T @ self.pull
+        across = (
+            self.across.reshape(self.own_pull.size, len(turn)) @ turn
+        )  # one product is faster than many small ones
+        return self._replace(common=common, pull=pull, across=across.reshape(self.across.shape))
+
+    def posterior(self, given: Variances) -> MixedPosterior:
+        """The posterior of the common numbers for given variances."""
+        w = float(np.exp(-given.noise))
+        size, own_size = np.exp(0.5 * given.common), np.exp(0.5 * given.own)
+        inner = np.linalg.cholesky(np.eye(len(own_size)) + w * own_size[:, None] * self.own * own_size)
+        half = np.swapaxes(np.linalg.inv(inner) * own_size, 1, 2)
+        halfway = np.swapaxes(half, 1, 2) @ self.across
+        flat = halfway.reshape(self.own_pull.size, len(size))
+        information = flat.T @ flat  # a product with its own transpose is half the work
+        information *= -w * w
+        information += w * self.common
+        information *= size[:, None] * size
+        pull = w * self.pull - w * w * np.einsum("gq,gqr->gr", self.own_pull, half).ravel() @ flat
+        rounding = ROUNDING * float(np.max(w * np.diag(self.common) * size**2, initial=0.0))
+        found = Informed.by(information, size * pull, rounding)
+        return MixedPosterior(
+            mean=size * found.mean,
+            root=size[:, None] * found.root,
+            pull=pull,
+            scaled=found.mean,
+            gain=np.einsum("ij,ij->i", found.root, found.root),
+            own=half @ np.swapaxes(half, 1, 2),
+            half=half,
+            halfway=halfway,
+            log_determinant=found.log_determinant
+            + 2.0 * float(np.sum(np.log(np.diagonal(inner, axis1=1, axis2=2)))),
+        )
 
 
 class MixedPosterior(NamedTuple):

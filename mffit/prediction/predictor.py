@@ -78,12 +78,13 @@ class MissedChannel(ReadOnlyArrays):
         coefficients count in the variance. ``force`` (n,) is that of the formula at the conditions ``settings`` (n, d),
         ``by_numbers`` are :meth:`by_numbers` there, ``left`` is what remains of the model error where nothing was tested.
         """
-        untold, functions = self._functions(settings)
+        untold, functions = self.smooth.faded(settings)
         functions = functions * left.share[:, None]
         shared = functions @ self.root[: len(self.missed)]
         mean, reading = (np.sum((shared + one) ** 2, axis=1) for one in by_numbers)
         # Between the lowest tested load and none, where it is zero again, the model error is free as a bridge is.
-        share = (2.0 * left.slip + untold) * left.load**2 + left.load * (1.0 - left.load)
+        free = 2.0 * left.slip * left.load**2 + left.load * (1.0 - left.load)
+        share = untold * left.load**2 + free * self.smooth.variance(settings)
         unlike = share * self.components.missed**2 + self._strays(settings) * force**2
         never = self.combinations.at(settings) * force**2  # it holds what the model knows of its error there
         unlike = unlike + np.maximum(never - mean - unlike, 0.0)
@@ -91,23 +92,17 @@ class MissedChannel(ReadOnlyArrays):
 
     def mean(self, settings: np.ndarray) -> np.ndarray:
         """The model error (n,) alone, as in :meth:`at`, averaged over conditions that are NaN."""
-        return np.asarray(self._functions(settings)[1] @ self.missed)
+        return np.asarray(self.smooth.faded(settings)[1] @ self.missed)
 
     def u(self, settings: np.ndarray, slopes: np.ndarray) -> np.ndarray:
         """Standard uncertainty (n,) of coefficients and model error together; ``settings`` and ``slopes`` as in :meth:`at`."""
-        both = np.hstack([np.nan_to_num(self._functions(settings)[1]), slopes]) @ self.root
+        both = np.hstack([np.nan_to_num(self.smooth.faded(settings)[1]), slopes]) @ self.root
         return np.asarray(np.sqrt(np.sum(both**2, axis=1)))
 
-    def u_between(self, settings: np.ndarray, slopes: np.ndarray, *, at_zero: bool) -> float:
-        """Standard uncertainty of the difference of two forces at ``settings`` (2, d), with their derivatives ``slopes`` (2, k).
-
-        Conditions ``at_zero`` of a slip are so close that readings beside them need not show how the force bends there.
-        """
-        untold, functions = self._functions(settings)
-        one, other = np.hstack([functions, slopes]) @ self.root
-        unlike = np.sum(untold)
-        if at_zero:
-            unlike = self.smooth.unseen(settings, np.array(self.components.lengths))
+    def u_between(self, settings: np.ndarray, slopes: np.ndarray) -> float:
+        """Standard uncertainty of the difference of two forces at ``settings`` (2, d), with derivatives ``slopes`` (2, k)."""
+        one, other = np.hstack([self.smooth.faded(settings)[1], slopes]) @ self.root
+        unlike = self.smooth.untold_change(settings)
         return float(np.sqrt(np.sum((one - other) ** 2) + unlike * self.components.missed**2))
 
     def by_numbers(self, slopes: np.ndarray, of_tyre: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -115,10 +110,6 @@ class MissedChannel(ReadOnlyArrays):
         own = self.root[len(self.missed) :]
         tyre = slopes[:, of_tyre] @ own[of_tyre]
         return tyre, tyre + slopes[:, ~of_tyre] @ own[~of_tyre]
-
-    def _functions(self, settings: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """As :meth:`SmoothFunctions.faded` at the likely lengths."""
-        return self.smooth.faded(settings, np.array(self.components.lengths))
 
     def _strays(self, settings: np.ndarray) -> np.ndarray:
         """Variance (n,) of the formula's error beyond the tested ranges, over the square of the force."""
@@ -295,12 +286,10 @@ class Predictor(ReadOnlyArrays):
         """This predictor with the covariance of the numbers as the fit states it, which counts on other paths than the tested."""
         return replace(self, stated=root(numbers.covariance_of(self.names))) if self.curved else self
 
-    def u_between(
-        self, fitted: Tyre, conditions: pd.DataFrame, channel: str, *, at_zero: bool = False
-    ) -> float:
+    def u_between(self, fitted: Tyre, conditions: pd.DataFrame, channel: str) -> float:
         """Standard uncertainty of the difference of the tyre's mean force between two conditions, [unit of the channel].
 
-        Conditions that are not stated are those in the middle of their values; ``at_zero`` as in :class:`MissedChannel`.
+        Conditions that are not stated are those in the middle of their values.
         """
         points, own = self.points(fitted, conditions), self.channels[channel]
         if self.T_range is not None:
@@ -310,7 +299,7 @@ class Predictor(ReadOnlyArrays):
         model = Simulation.of(fitted, turn_slip=self.curved).with_numbers(self.beside)
         slopes = model.sensitivities(points, self.names, [channel])[1][channel] * self._of_tyre
         middle = np.mean([*_settings(points, own.smooth.inputs)], axis=0)
-        return own.u_between(middle, slopes, at_zero=at_zero)
+        return own.u_between(middle, slopes)
 
     def least_known(self, fitted: Tyre, channel: str) -> str:
         """The coefficient that adds most to the uncertainty of a channel of the upright wheel at nominal load and no slip."""

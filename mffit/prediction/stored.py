@@ -55,7 +55,8 @@ def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
         "channels": {
             name: {
                 "inputs": [asdict(one) for one in own.smooth.inputs],
-                "orders": own.smooth.orders.tolist(),
+                "nodes": own.smooth.nodes.tolist(),
+                "sign": own.smooth.sign,
                 "components": asdict(own.components),
                 "missed": own.missed.tolist(),
                 "root": _text(own.root),
@@ -210,10 +211,12 @@ def _channel(own: dict[str, Any], coefficients: int) -> MissedChannel:
     inputs = tuple(Input(**{**one, "averaged": tuple(one["averaged"])}) for one in own["inputs"])
     shape = [len(inputs[i].settings()) for i in planned(inputs)]
     tested, strays = (_array(own[key], 1).reshape(shape) for key in ("tested", "strays"))
+    components = Components(**{**own["components"], "lengths": tuple(own["components"]["lengths"])})
     missed = np.array(own["missed"], dtype=float)
+    nodes = np.array(own["nodes"], dtype=float).reshape(len(missed), len(inputs))
     return MissedChannel(
-        smooth=SmoothFunctions(inputs, np.array(own["orders"], dtype=int).reshape(len(missed), len(inputs))),
-        components=Components(**{**own["components"], "lengths": tuple(own["components"]["lengths"])}),
+        smooth=SmoothFunctions(inputs, nodes, np.array(components.lengths), int(own["sign"])),
+        components=components,
         missed=missed,
         root=_array(own["root"], len(missed) + coefficients),
         noise=float(own["noise"]),

@@ -13,10 +13,17 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from scipy.special import chdtrc, fdtrc, ndtr
+from scipy.special import chdtrc, chdtri, fdtrc, ndtr
 
 from mffit.as_json import keys
-from mffit.constants import CANDIDATES_FITTED, CERTAIN_SIGMA, FEWEST, MOST, PREDICTION_FALSE_ALARM
+from mffit.constants import (
+    CANDIDATES_FITTED,
+    CERTAIN_SIGMA,
+    FALSE_ALARM,
+    FEWEST,
+    MOST,
+    PREDICTION_FALSE_ALARM,
+)
 from mffit.errors import InputError
 from mffit.points import Points
 from mffit.points.constants import UNLIKE_SHARE
@@ -255,9 +262,10 @@ def _error(name: str, found: LeftOutReadings, size: float) -> Error:
 
 
 def _beyond_noise(found: LeftOutReadings, noise: float) -> float:
-    """Rms error of a prediction beyond the noise, without the worst points."""
+    """Rms error of a prediction beyond what chance makes of the noise, without the worst points."""
     kept = without_worst(np.abs(found.error))
-    return math.sqrt(max(rms(found.error[kept]) ** 2 - noise**2, 0.0))
+    by_chance = noise**2 * float(chdtri(len(kept), FALSE_ALARM)) / len(kept)
+    return math.sqrt(max(rms(found.error[kept]) ** 2 - by_chance, 0.0))
 
 
 def _scatters(found: LeftOutReadings, noise: float) -> bool:

@@ -203,7 +203,7 @@ def test_the_model_error_counts_for_the_numbers_of_its_channel():
     missed = SimpleNamespace(
         channels={"Fy": None},
         missed=lambda _, points: 4000.0 * points.alpha,
-        u_between=lambda tyre, ends, channel, at_zero: 1e5 * float(np.ptp(np.radians(ends.alpha_deg))),
+        u_between=lambda tyre, ends, channel: 1e5 * float(np.ptp(np.radians(ends.alpha_deg))),
     )
     alone, beside = (
         characteristics(truth(), 1400.0, turn_slip=False, known=known, predictor=by) for by in (None, missed)

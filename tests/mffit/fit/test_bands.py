@@ -10,7 +10,7 @@ from mffit.fit.bands import BandBesideSweeps, Bands, bands
 from mffit.fit.wording import bands_sentence, beside_sentence
 from mffit.linearised.combined import Combinations
 from mffit.linearised.components import Components
-from mffit.linearised.smooth import SmoothFunctions
+from mffit.linearised.smooth import CONSTANT
 from mffit.points import make_points
 from mffit.prediction.predictor import MissedChannel, Predictor
 from mffit.rig import Simulation
@@ -24,8 +24,7 @@ def known(names, root):
     root = np.vstack([np.zeros((1, root.shape[1])), root])
     nothing = Components(0.0, (), 0.0, 0.0, 0.0, 0.3, 0.0)
     tested = Combinations((), np.ones(()), np.zeros(()))
-    smooth = SmoothFunctions.over(())
-    own = MissedChannel(smooth, nothing, np.zeros(1), root, 0.0, 0.0, np.zeros(0), tested, False)
+    own = MissedChannel(CONSTANT, nothing, np.zeros(1), root, 0.0, 0.0, np.zeros(0), tested, False)
     return Predictor(0.0, names, {"Fx": own, "Fy": own}, {}, {}, (16.0, 16.0))
 
 

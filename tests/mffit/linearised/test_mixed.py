@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
@@ -47,7 +49,7 @@ def test_evidence_and_its_slopes_are_those_of_the_dense_gaussian(model):
     assert found.value + constant == pytest.approx(evidence(model, at), rel=1e-9)
     steps = 1e-4 * np.eye(len(at))
     slopes = [(evidence(model, at + step) - evidence(model, at - step)) / 2e-4 for step in steps]
-    assert [*found.common, *found.own, found.noise] == pytest.approx(slopes, rel=1e-5, abs=1e-7)
+    assert [*np.diag(found.common), *found.own, found.noise] == pytest.approx(slopes, rel=1e-5, abs=1e-7)
 
 
 def test_information_about_the_variances_is_that_of_the_dense_gaussian(model):
@@ -58,9 +60,20 @@ def test_information_about_the_variances_is_that_of_the_dense_gaussian(model):
         size = np.exp(0.5 * variances)
         return 0.5 * (columns.T @ np.linalg.solve(V, columns) * np.outer(size, size)) ** 2
 
-    np.testing.assert_allclose(found.of_common, told(model.common, GIVEN.common))
+    np.testing.assert_allclose(0.5 * found.told**2, told(model.common, GIVEN.common))
     runs = [np.isin(np.arange(len(V)), g)[:, None] * model.own for g in model.groups]
     np.testing.assert_allclose(found.of_own, sum(told(own, GIVEN.own) for own in runs))
+
+
+def test_turned_columns_have_the_evidence_of_their_own_model(model):
+    turn = np.random.default_rng(5).standard_normal((3, 3))
+    alone, found = (
+        replace(model, common=model.common @ turn).evidence(GIVEN),
+        model.evidence(GIVEN, turn),
+    )
+    assert found.value == pytest.approx(alone.value)
+    np.testing.assert_allclose(found.common, alone.common)
+    np.testing.assert_allclose(found.told, alone.told)
 
 
 def test_posterior_is_the_conditional_of_the_dense_gaussian(model):

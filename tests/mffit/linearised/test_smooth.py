@@ -8,49 +8,54 @@ import pytest
 from mffit.linearised import constants
 from mffit.linearised.inputs import Input
 from mffit.linearised.mixed import Mixed
-from mffit.linearised.smooth import SmoothFunctions
+from mffit.linearised.smooth import CONSTANT, SmoothFunctions
 from mffit.scatter import rms
 
 ALPHA = Input("alpha", -0.2, 0.3, 0.1)
 LOAD = Input("Fz", 1000.0, 3000.0, 1000.0)
+GRID = np.stack(np.meshgrid(np.linspace(-0.2, 0.3, 9), np.linspace(1000.0, 3000.0, 4)), axis=-1).reshape(
+    -1, 2
+)
 
 
-def covariance(smooth: SmoothFunctions, at: np.ndarray, lengths: list[float]) -> np.ndarray:
-    """By the functions, between places (n, d); of all variance 1."""
-    columns = smooth.columns(at)
-    return (columns * np.exp(smooth.log_variance(np.array(lengths))[0])) @ columns.T
+def covariance(
+    inputs: tuple[Input, ...], at: np.ndarray, others: np.ndarray, lengths: tuple[float, ...]
+) -> np.ndarray:
+    """Of a Matern process of order 5/2 between conditions (n, d) and (k, d); its variance is 1 at the middle load."""
+    found = np.ones((len(at), len(others)))
+    for one, x, y, length in zip(inputs, at.T, others.T, lengths, strict=True):
+        far = np.sqrt(5.0) * np.abs(x[:, None] - y) / length
+        found *= (1.0 + far + far**2 / 3.0) * np.exp(-far)
+        if one.name == "Fz":
+            found *= 0.5 * (1.0 + np.outer(x, y) / (one.lower * one.upper))
+    return found
 
 
-def matern(one: Input, at: np.ndarray, others: np.ndarray, length: float) -> np.ndarray:
-    """Correlation (n, k) of the model error between settings (n,) and (k,) of one condition."""
-    far = np.sqrt(5.0) * np.abs(at[:, None] - others) / length
-    return (1.0 + far + far**2 / 3.0) * np.exp(-far)
+def test_functions_with_all_readings_as_nodes_have_the_covariance_of_the_process():
+    lengths = (0.15, 1500.0)
+    columns = SmoothFunctions.over((ALPHA, LOAD), GRID, lengths).columns(GRID)
+    assert columns.shape == (len(GRID), len(GRID))
+    assert columns @ columns.T == pytest.approx(covariance((ALPHA, LOAD), GRID, GRID, lengths), abs=1e-4)
 
 
-@pytest.mark.parametrize("length", [0.5, 1.0, 3.0])
-@pytest.mark.parametrize("settings", [2, 3, 5])
-def test_settings_that_runs_hold_differ_as_a_matern_covariance_says(settings, length):
-    """From one end to the other, however long the length is."""
-    one = Input("gamma", 0.0, 1.0, 1.0 / (settings - 1))
-    found = covariance(SmoothFunctions.over((one,)), np.array([[0.0], [1.0]]), [length])
-    differ = np.array([1.0, -1.0])
-    true = matern(one, np.array([0.0, 1.0]), np.array([0.0, 1.0]), length)
-    assert differ @ found @ differ == pytest.approx(differ @ true @ differ, rel=0.1)
+def test_nodes_of_one_length_have_the_covariance_of_another():
+    smooth, lengths = SmoothFunctions.over((ALPHA, LOAD), GRID, (0.15, 1500.0)), np.array([0.3, 900.0])
+    true = covariance((ALPHA, LOAD), smooth.nodes, smooth.nodes, (0.3, 900.0))
+    assert smooth.at_nodes(lengths)[0] == pytest.approx(true, abs=1e-4)
 
 
-@pytest.mark.parametrize("length", [0.05, 0.1, 0.2])
-def test_functions_of_a_swept_condition_have_a_matern_covariance(length):
-    """But near the ends, where there is more of it."""
-    swept = Input("alpha", -0.2, 0.3, 0.5 / 12.0)
-    at = np.linspace(-0.05, 0.15, 9)
-    found = covariance(SmoothFunctions.over((swept,)), at[:, None], [length])
-    assert found == pytest.approx(matern(swept, at, at, length), abs=0.2)
+@pytest.mark.parametrize("enough", [0.3, 0.03, 0.003])
+def test_nodes_tell_all_but_enough_at_every_reading_and_no_node_is_idle(enough):
+    random = np.random.default_rng(2)
+    at = random.uniform([-0.2, 1000.0], [0.3, 3000.0], (300, 2))
+    smooth = SmoothFunctions.over((ALPHA, LOAD), at, (0.1, 800.0), enough=enough)
+    untold, _ = smooth.faded(at)
+    assert np.max(untold) <= enough
+    fewer = SmoothFunctions((ALPHA, LOAD), smooth.nodes[:-1], smooth.lengths)
+    assert np.max(fewer.faded(at)[0]) > enough
 
 
-CONDITIONS = (
-    Input("alpha", 0.0, 2.0, 1.0), Input("kappa", 0.0, 12.0, 1.0), Input("Fz", 0.0, 3.0, 1.0), Input("gamma", 0.0, 2.0, 1.0),
-    Input("p", 0.0, 2.0, 1.0), Input("T", 0.0, 4.0, 1.0),
-)  # fmt: skip
+CONDITIONS = tuple(Input(f"x{i}", 0.0, end, 1.0) for i, end in enumerate((2.0, 12.0, 3.0, 2.0, 2.0, 4.0)))
 LENGTHS = (1.1, 3.0, 2.5, 2.5, 1.5, 3.0)
 
 
@@ -61,8 +66,7 @@ def test_a_model_error_over_many_conditions_is_predicted_as_by_its_covariance():
     held = np.column_stack([held, random.uniform(0.0, 4.0, len(held))])
     at = np.repeat(held, 7, axis=0)
     at = np.insert(at, 1, np.tile(np.linspace(0.0, 12.0, 7), len(held)), axis=1)
-    each = [matern(one, x, x, size) for one, x, size in zip(CONDITIONS, at.T, LENGTHS, strict=True)]
-    alike, n = np.prod(each, axis=0), len(at)
+    alike, n = covariance(CONDITIONS, at, at, LENGTHS), len(at)
     force = np.linalg.cholesky(alike + 1e-9 * np.eye(n)) @ random.standard_normal(n)
     noise = 0.1
     read = force + noise * random.standard_normal(n)
@@ -70,74 +74,57 @@ def test_a_model_error_over_many_conditions_is_predicted_as_by_its_covariance():
     known = alike[np.ix_(~out, ~out)] + noise**2 * np.eye(np.sum(~out))
     best = alike[np.ix_(out, ~out)] @ np.linalg.solve(known, read[~out])
 
-    smooth = SmoothFunctions.over(CONDITIONS, lengths=LENGTHS)
+    smooth = SmoothFunctions.over(CONDITIONS, at[~out], LENGTHS, enough=noise**2)
     columns = smooth.columns(at)
     model = Mixed(read / noise, columns / noise, np.zeros((n, 1)), [np.flatnonzero(~out)])
-    given = model.alike(smooth.log_variance(np.array(LENGTHS))[0])
+    given = model.alike(np.zeros(len(smooth.nodes)))
     predicted = columns[out] @ model.posterior(given).mean
     assert rms(predicted - force[out]) < 1.1 * rms(best - force[out])
 
 
-def test_shares_of_all_functions_are_the_whole_variance():
-    """But for the smallest, which are left out."""
-    smooth = SmoothFunctions.over((ALPHA, LOAD))
-    shares = np.exp(smooth.log_variance(np.array([0.15, 1500.0]))[0])
-    assert shares.sum() == pytest.approx(1.0, abs=0.01)
-    assert shares.sum() <= 1.0 + 1e-3
+@pytest.mark.parametrize("sign", [None, -1, 1])
+def test_slopes_of_the_covariance_are_its_differences(sign):
+    alpha = ALPHA if sign is None else Input("alpha", -0.3, 0.3, 0.05, mirrored=True)
+    smooth, at = SmoothFunctions.over((alpha, LOAD), GRID, (0.15, 1500.0), sign or 1), np.log([0.2, 1200.0])
+    _, slopes = smooth.at_nodes(np.exp(at))
+    for slope, step in zip(slopes, 1e-5 * np.eye(2), strict=True):
+        rise = smooth.at_nodes(np.exp(at + step))[0] - smooth.at_nodes(np.exp(at - step))[0]
+        assert slope == pytest.approx(rise / 2e-5, rel=1e-4, abs=1e-4)
 
 
-def test_slopes_of_the_shares_are_their_differences():
-    smooth, at = SmoothFunctions.over((ALPHA, LOAD)), np.log([0.15, 1500.0])
-    slopes = smooth.log_variance(np.exp(at))[1]
-    for i, step in enumerate(1e-5 * np.eye(2)):
-        rise = smooth.log_variance(np.exp(at + step))[0] - smooth.log_variance(np.exp(at - step))[0]
-        assert slopes[:, i] == pytest.approx(rise / 2e-5, rel=1e-5, abs=1e-6)
+def test_functions_that_change_little_over_the_load_are_straight_lines_over_it():
+    """A constant, as a zero of the rig is, and a part of the load, as a force is."""
+    loads = np.linspace(1000.0, 3000.0, 21)[:, None]
+    columns = SmoothFunctions.over((LOAD,), loads, (1e6,)).columns(loads)
+    lines = np.column_stack([np.ones(21), loads[:, 0]])
+    left = columns - lines @ np.linalg.lstsq(lines, columns, rcond=None)[0]
+    assert rms(left) < 0.01 * rms(columns)
+    assert np.linalg.matrix_rank(columns, tol=0.1) == 2
 
 
 def test_beyond_the_tested_range_the_functions_stay_and_fade():
-    smooth = SmoothFunctions.over((ALPHA, LOAD))
     inside, end, beyond = [0.1, 2000.0], [0.3, 3000.0], [0.4, 3500.0]
+    smooth = SmoothFunctions.over((ALPHA, LOAD), np.array([inside, end, [-0.2, 2000.0]]), (0.1, 500.0))
     columns = smooth.columns(np.array([inside, end, beyond]))
     assert np.array_equal(columns[1], columns[2])
     assert not np.allclose(columns[0], columns[1])
-    settings, lengths = np.array([inside, end, beyond, [-0.3, 2000.0]]), np.array([0.1, 500.0])
-    untold, faded = smooth.faded(settings, lengths)
-    assert untold == pytest.approx(1.0 - np.exp([0.0, 0.0, -2.0, -1.0]))
+    settings = np.array([inside, end, beyond, [-0.3, 2000.0]])
+    untold, faded = smooth.faded(settings)
+    assert untold == pytest.approx(
+        smooth.variance(settings) * (1.0 - np.exp([0.0, 0.0, -2.0, -1.0])), abs=1e-6
+    )
     assert faded[2] == pytest.approx(columns[2] * np.exp(-1.0))
 
 
 def test_a_tyre_at_one_condition_has_a_constant_only():
-    smooth = SmoothFunctions.over(())
-    assert np.array_equal(smooth.columns(np.empty((3, 0))), np.ones((3, 1)))
-    assert np.array_equal(smooth.squared_distance(np.empty((3, 0)), np.empty(0)), np.zeros(3))
+    assert np.allclose(CONSTANT.columns(np.empty((3, 0))), np.ones((3, 1)))
+    assert np.array_equal(CONSTANT.squared_distance(np.empty((3, 0))), np.zeros(3))
 
 
-def test_many_conditions_keep_to_the_largest_functions():
-    """Ten conditions would have a billion products."""
-    smooth = SmoothFunctions.over(tuple(Input(f"x{i}", 0.0, 1.0, 0.1 if i < 3 else 1.0) for i in range(10)))
-    assert len(smooth.orders) == constants.FUNCTIONS_AT_FIRST
-    shares = smooth.log_variance(np.full(10, 1.0))[0]
-    assert shares.max() < 0.0
-    assert len(SmoothFunctions.over(smooth.inputs, lengths=[1.0] * 10).orders) == constants.FUNCTIONS
-
-
-@pytest.mark.parametrize("sign", [-1, 1])
-@pytest.mark.parametrize("negligible", [0.1, 0.01])
-def test_functions_are_left_out_that_add_little(negligible, sign, monkeypatch):
-    monkeypatch.setattr(constants, "FUNCTIONS_AT_FIRST", 1)
-    inputs = (
-        Input("alpha", -0.2, 0.2, 0.05, mirrored=True),
-        LOAD,
-        Input("gamma", -0.3, 0.3, 0.1, mirrored=True),
-    )
-    all_of_them, some = (
-        SmoothFunctions.over(inputs, sign, [0.2, 1500.0, 0.4], share) for share in (0.0, negligible)
-    )
-    shortest = np.array([0.1, 1000.0, 0.2])  # for which they are chosen
-    whole, left = (np.exp(one.log_variance(shortest)[0]).sum() for one in (all_of_them, some))
-    fewer = np.exp(some.log_variance(shortest)[0][:-1]).sum()
-    assert len(some.orders) < len(all_of_them.orders)
-    assert fewer < whole - negligible <= left
+def test_many_readings_keep_to_the_most_functions():
+    at = np.random.default_rng(6).uniform(0.0, 1.0, (900, 10))
+    inputs = tuple(Input(f"x{i}", 0.0, 1.0, 0.1 if i < 3 else 1.0) for i in range(10))
+    assert len(SmoothFunctions.over(inputs, at, [0.2] * 10).nodes) == constants.FUNCTIONS
 
 
 @pytest.mark.parametrize("sign", [-1, 1])
@@ -146,64 +133,49 @@ def test_functions_of_mirrored_conditions_have_the_symmetry_of_the_channel(sign)
         Input("alpha", -0.2, 0.2, 0.05, mirrored=True),
         Input("phi_t", -0.75, 0.75, 0.75, mirrored=True),
     )
-    smooth = SmoothFunctions.over((alpha, LOAD, path), sign)
     at = np.random.default_rng(3).uniform([-0.2, 1000.0, -0.75], [0.2, 3000.0, 0.75], (20, 3))
-    assert len(smooth.orders) > 10
-    assert smooth.columns(at * [-1.0, 1.0, -1.0]) == pytest.approx(sign * smooth.columns(at), abs=1e-12)
-    assert np.any(
-        np.abs(smooth.columns(np.array([[0.0, 2000.0, -0.75]]))) > 0.1
-    )  # turn slip alone has a force
+    smooth = SmoothFunctions.over((alpha, LOAD, path), at, (0.1, 1500.0, 1.0), sign)
+    assert len(smooth.nodes) > 10
+    assert smooth.columns(at * [-1.0, 1.0, -1.0]) == pytest.approx(sign * smooth.columns(at), abs=1e-6)
+    turned = np.array([[0.0, 2000.0, -0.75]])
+    assert np.any(np.abs(smooth.columns(turned)) > 0.1)  # turn slip alone has a force
 
 
 def test_a_condition_that_is_not_stated_is_averaged_over_its_usual_values():
     usual = (42.0, 50.0, 59.0)
     inputs = (Input("alpha", -0.1, 0.1, 0.02), Input("T", 40.0, 60.0, 5.0, averaged=usual))
-    smooth, alpha = SmoothFunctions.over(inputs), np.linspace(-0.1, 0.1, 7)
-    each = [smooth.columns(np.column_stack([alpha, np.full(7, T)])) for T in usual]
-    unstated = np.column_stack([alpha, np.full(7, np.nan)])
-    untold, functions = smooth.faded(unstated, np.array([0.05, 8.0]))
-    assert np.all(untold == 0.0)
-    assert functions == pytest.approx(np.mean(each, axis=0), abs=1e-12)
+    alpha = np.linspace(-0.1, 0.1, 7)
+    stated = [np.column_stack([alpha, np.full(7, T)]) for T in usual]
+    smooth = SmoothFunctions.over(inputs, np.vstack(stated), (0.05, 8.0))
+    untold, functions = smooth.faded(np.column_stack([alpha, np.full(7, np.nan)]))
+    assert untold == pytest.approx(0.0, abs=1e-4)
+    assert functions == pytest.approx(np.mean([smooth.columns(one) for one in stated], axis=0), abs=1e-12)
 
 
-def test_functions_are_chosen_for_the_likely_lengths():
-    """A long one over some conditions leaves more functions to the others."""
-    inputs = tuple(Input(f"x{i}", 0.0, 1.0, 0.1) for i in range(4))
-    first, again = (SmoothFunctions.over(inputs, lengths=at) for at in (None, (0.1, 5.0, 5.0, 5.0)))
-    assert first.orders[:, 0].max() < again.orders[:, 0].max()
-    first, again = (
-        np.exp(one.log_variance(np.array([0.1, 5.0, 5.0, 5.0]))[0]).sum() for one in (first, again)
-    )
-    assert first < 0.9 < 0.99 < again
+def test_what_no_reading_shows_of_a_difference_is_that_of_drawn_functions():
+    """Of functions with the covariance of the process, what a regression on their values at the nodes leaves of a difference.
 
-
-def test_what_no_setting_shows_of_a_difference_is_that_of_drawn_functions():
-    """Of functions with the Matern covariance, what a regression on their values at all settings leaves of a difference.
-
-    Beyond all loads the difference itself; at two settings, and over a condition that is no slip, nothing.
+    Beyond all loads the difference itself.
     """
-    alpha, length, pair = Input("alpha", -0.12, 0.12, 0.02), 0.05, np.array([-2e-3, 1e-3])
-    at = alpha.stretched(np.append(pair, np.linspace(-0.12, 0.12, 13)))
-    far = np.sqrt(5.0) * np.abs(at[:, None] - at) / length
-    alike = (1.0 + far + far**2 / 3.0) * np.exp(-far)
-    root = np.linalg.cholesky(alike + 1e-12 * np.eye(len(at)))
+    alpha, length, pair = Input("alpha", -0.12, 0.12, 0.1), 0.05, np.array([-2e-3, 1e-3])
+    at = np.append(pair, np.linspace(-0.12, 0.12, 6))[:, None]
+    root = np.linalg.cholesky(covariance((alpha,), at, at, (length,)) + 1e-12 * np.eye(len(at)))
     drawn = np.random.default_rng(1).standard_normal((20_000, len(at))) @ root.T
     change = drawn[:, 1] - drawn[:, 0]
     left = change - drawn[:, 2:] @ np.linalg.lstsq(drawn[:, 2:], change, rcond=None)[0]
-    smooth, lengths = SmoothFunctions.over((alpha, LOAD)), np.array([length, 1500.0])
-    settings = np.column_stack([pair, [2000.0, 2000.0]])
-    assert smooth.unseen(settings, lengths) == pytest.approx(np.var(left), rel=0.04)
-    assert smooth.unseen(settings + np.array([0.0, 20_000.0]), lengths) == pytest.approx(
-        np.var(change), rel=0.04
-    )
-    assert smooth.unseen(np.column_stack([[0.02, 0.06], [2000.0] * 2]), lengths) < 1e-6
-    camber = SmoothFunctions.over((Input("gamma", -0.12, 0.12, 0.02), LOAD))
-    assert camber.unseen(settings, lengths) < 1e-6
+    load = np.full(len(at), np.sqrt(LOAD.lower * LOAD.upper))  # where the process has its size
+    settings = np.column_stack([at, load])
+    smooth = SmoothFunctions.over((alpha, LOAD), settings[2:], (length, 1500.0))
+    assert smooth.untold_change(settings[:2]) == pytest.approx(np.var(left), rel=0.04)
+    far, growth = settings[:2] + np.array([0.0, 20_000.0]), 0.5 * (1.0 + (LOAD.upper / load[0]) ** 2)
+    assert smooth.untold_change(far) == pytest.approx(growth * np.var(change), rel=0.04)
 
 
 def test_a_slope_at_zero_slip_is_known_less_than_one_beside():
     """A force over slip may bend fastest around zero, where its readings are as far apart as beside it."""
-    alpha, lengths = Input("alpha", -0.2, 0.2, 0.4 / 12.0), np.array([0.05, 1500.0])
-    smooth, step = SmoothFunctions.over((alpha, LOAD)), np.array([[-1e-3, 0.0], [1e-3, 0.0]])
-    at_zero, aside = (smooth.unseen(step + np.array([x, 2000.0]), lengths) for x in (0.0, 0.4 / 3.0))
+    alpha = Input("alpha", -0.2, 0.2, 0.4 / 12.0)
+    readings = np.linspace(-0.2, 0.2, 14)[:, None]
+    smooth, step = SmoothFunctions.over((alpha,), readings, (0.05,)), np.array([[-1e-3], [1e-3]])
+    middle = 0.5 * (readings[11] + readings[12])  # as zero is the middle of two readings
+    at_zero, aside = (smooth.untold_change(step + x) for x in (0.0, middle))
     assert at_zero > 5.0 * aside

@@ -101,10 +101,14 @@ def test_the_grip_of_a_foreign_tyre_is_missed_by_what_is_said(foreign: Built):
 
 
 def test_the_slopes_of_a_foreign_tyre_are_missed_by_what_is_said(foreign: Built):
-    """The brush tyre's true slope at zero sideslip against that of the written file; 0.8 deg apart, its readings smooth it."""
+    """The brush tyre's true slope at zero sideslip against that of the written file; 0.8 deg apart, its readings smooth it.
+
+    At small loads the readings do not tell the slopes well enough.
+    """
     tyre, end = tir.read(foreign.folder / "brush.tir"), np.radians([-0.4, 0.4])
     slopes = foreign.result.missed["Fy"].slopes
-    assert [one.load for one in slopes] == pytest.approx(LOADS)
+    assert [one.load for one in slopes] == pytest.approx(LOADS[-len(slopes) :])
+    assert len(slopes) >= 3
     for one in slopes:
         true = np.diff(brush(end, 0.0, one.load)[0]) / np.diff(tyre(one.load, alpha=end).Fy) - 1.0
         assert 0.35 < one.share / float(true[0]) < 1.3
