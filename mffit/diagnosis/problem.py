@@ -20,7 +20,7 @@ from mffit.effects import Effect, Free
 from mffit.fit.constants import REFIT_STEPS, STAGE_TOLERANCE
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve, touches
 from mffit.left_out import moved_without
-from mffit.linearised.gaussian import Directions, Informed
+from mffit.linearised.gaussian import Informed
 from mffit.numbers import Numbers
 from mffit.points import Points
 from mffit.rig import Simulation
@@ -86,12 +86,7 @@ class DiagnosisProblem:
         key = frozenset(amplitude.items())
         if key not in kept:
             other = copy(self)
-            sized = {
-                name: Directions(of.axes, amplitude[name] ** 2 * of.variance)
-                for name, (_, of) in self.structure.directions.items()
-                if amplitude.get(name)
-            }
-            other.amplitude, other.noise = amplitude, replace(self.structure.scatter, structure=sized)
+            other.amplitude, other.noise = amplitude, self.structure.noise(amplitude)
             vars(other).pop("null", None)  # that of the other amplitude
             kept[key] = other
         return kept[key]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -117,7 +117,12 @@ class SmoothStructure(ReadOnlyArrays):
 
     def noise(self, amplitude: Mapping[str, float]) -> Noise:
         """The noise with structure of these amplitudes by channel, one standard deviation each."""
-        return self.scatter.sharing(self.scatter.shared, self.columns(amplitude))
+        sized = {
+            name: Directions(of.axes, amplitude[name] ** 2 * of.variance)
+            for name, (_, of) in self.directions.items()
+            if amplitude.get(name)
+        }
+        return replace(self.scatter, structure=sized)
 
     def estimated(self, amplitude: Mapping[str, float], residual: np.ndarray) -> np.ndarray:
         """The structure (c n,) of these amplitudes that a residual (c n,) shows."""

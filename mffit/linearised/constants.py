@@ -56,9 +56,7 @@ LONGEST_LENGTH = Real(
     20.0, "-", "Largest length of smooth functions over the tested range: along it they are constant."
 )
 SEARCH_STEPS = Count(60, "-", "Most steps of a search for the most probable parameters.")
-PROBES = Count(
-    10, "-", "Random directions from which a search estimates how much readings tell of its parameters."
-)
+PROBES = Count(10, "-", "Random directions by which a search estimates how well its parameters are known.")
 SEARCH_TOLERANCE = Real(0.05, "-", "Gain of log evidence by a step at which such a search ends.")
 EVIDENCE_STEP = Real(
     0.1, "-", "Step of a logarithm for the differences of slopes that give the width of its distribution."

@@ -124,15 +124,16 @@ class SmoothFunctions(ReadOnlyArrays):
         """Variance of the process's change between two conditions (2, d) that its values at the nodes do not tell."""
         one, other = pair
         whole = sum(self.covariance(at, at) for at in pair) - 2.0 * self.covariance(one, other)
-        told, others = self.faded(pair)[1]
+        told, others = self.fading(pair)
         return max(float(whole - np.sum((told - others) ** 2)), 0.0)
 
-    def faded(self, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Variance (n,) of the process of unit size at conditions (n, d) that the nodes do not tell, and the functions (n, m).
+    def fading(self, at: np.ndarray) -> np.ndarray:
+        """Values (n, m) at conditions (n, d), which fade with the :meth:`squared_distance` from the tested ones."""
+        return np.asarray(np.exp(-0.5 * self.squared_distance(at))[:, None] * self.columns(at))
 
-        The functions fade with the :meth:`squared_distance` from the tested conditions.
-        """
-        functions = np.exp(-0.5 * self.squared_distance(at))[:, None] * self.columns(at)
+    def faded(self, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Variance (n,) of the process of unit size at conditions (n, d) that the nodes do not tell, and :meth:`fading`."""
+        functions = self.fading(at)
         return np.maximum(self.variance(at) - np.sum(functions**2, axis=1), 0.0), functions
 
     def squared_distance(self, at: np.ndarray) -> np.ndarray:

@@ -92,16 +92,16 @@ class MissedChannel(ReadOnlyArrays):
 
     def mean(self, settings: np.ndarray) -> np.ndarray:
         """The model error (n,) alone, as in :meth:`at`, averaged over conditions that are NaN."""
-        return np.asarray(self.smooth.faded(settings)[1] @ self.missed)
+        return np.asarray(self.smooth.fading(settings) @ self.missed)
 
     def u(self, settings: np.ndarray, slopes: np.ndarray) -> np.ndarray:
         """Standard uncertainty (n,) of coefficients and model error together; ``settings`` and ``slopes`` as in :meth:`at`."""
-        both = np.hstack([np.nan_to_num(self.smooth.faded(settings)[1]), slopes]) @ self.root
+        both = np.hstack([np.nan_to_num(self.smooth.fading(settings)), slopes]) @ self.root
         return np.asarray(np.sqrt(np.sum(both**2, axis=1)))
 
     def u_between(self, settings: np.ndarray, slopes: np.ndarray) -> float:
         """Standard uncertainty of the difference of two forces at ``settings`` (2, d), with derivatives ``slopes`` (2, k)."""
-        one, other = np.hstack([self.smooth.faded(settings)[1], slopes]) @ self.root
+        one, other = np.hstack([self.smooth.fading(settings), slopes]) @ self.root
         unlike = self.smooth.untold_change(settings)
         return float(np.sqrt(np.sum((one - other) ** 2) + unlike * self.components.missed**2))
 

@@ -52,12 +52,11 @@ def between_runs(found: NuisanceFit, points: Points) -> BetweenRuns | None:
     runs = tuple(dict.fromkeys(name.partition(OF_RUN)[2] for name in own))
     # The relative uncertainty of a standard deviation from n values, to first order.
     share = 1.0 / math.sqrt(2.0 * len(runs))
-    rest = as_written(full).readings(points, full.problem.channels)
     return BetweenRuns(
         runs=runs,
         scatter={name: (value, share * value) for name, value in found.choice.scatter.items()},
         values={name: tuple(own[f"{name}{OF_RUN}{run}"] for run in runs) for name in found.choice.scatter},
-        alone=agreement.with_points(rest, points),
+        alone=_of_file(full, points),
     )
 
 
@@ -90,18 +89,18 @@ def over_speed(found: NuisanceFit, points: Points) -> OverSpeed | None:
     terms = {e.name: full.rig[e.name] for e in BESIDE if e.counts_from == V_REF and e.name in full.rig}
     if not terms:
         return None
-    rest = as_written(full).readings(points, full.problem.channels)
     return OverSpeed(
         V_ref=full.problem.value(V_REF),
         V_range=(float(np.min(points.V)), float(np.max(points.V))),
         terms=terms,
-        alone=agreement.with_points(rest, points),
+        alone=_of_file(full, points),
     )
 
 
-def as_written(fitted: Fitted) -> Simulation:
-    """The simulation of a fit without what its file has not: random effects of runs and terms beside the formula."""
-    return without_runs(without_terms(fitted, [P_REF, V_REF]))
+def _of_file(fitted: Fitted, points: Points) -> dict[str, Agreement]:
+    """By channel, agreement of the file, which has neither effects of single runs nor terms beside the formula, with points."""
+    written = without_runs(without_terms(fitted, [P_REF, V_REF]))
+    return agreement.with_points(written.readings(points, fitted.problem.channels), points)
 
 
 def without_terms(fitted: Fitted, references: Sequence[str]) -> Simulation:
