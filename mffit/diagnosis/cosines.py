@@ -25,7 +25,7 @@ def cosines(inputs: tuple[Input, ...], at: np.ndarray) -> np.ndarray:
     for one, x in zip(inputs, at.T, strict=True):
         steps = round(one.width / one.spacing) * (1 if one.is_held else 2)
         settings = np.linspace(one.lower, one.upper, steps + 1)
-        alike = matern([np.abs(settings[:, None] - settings)], [one.spacing])
+        alike = matern(np.abs(settings[:, None] - settings), one.spacing)
         waves = _waves(one, settings, steps) / (steps + 1)
         share = np.maximum(np.einsum("ik,ij,jk->k", waves, alike, waves, optimize=True), LEAST)
         size = np.outer(size, share).ravel()

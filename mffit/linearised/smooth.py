@@ -10,10 +10,10 @@ two conditions together needs few.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import solve_triangular
@@ -26,6 +26,41 @@ from tir.frozen import ReadOnlyArrays
 
 SINGULAR = 1e-6
 """Added to correlations, so that those of close settings can be inverted."""
+
+BLOCK = 64
+"""Conditions of which covariances are computed together."""
+
+
+class _Places(NamedTuple):
+    """Places of n conditions on d scales; of the equal values along a scale, covariances are computed once."""
+
+    many: int  #: n
+    values: list[np.ndarray]  #: (d,) different values along every scale
+    which: list[np.ndarray]  #: (d, n) index of each place's value
+
+    @classmethod
+    def of(cls, at: np.ndarray) -> _Places:
+        """The places (n, d)."""
+        each = [np.unique(x, return_inverse=True) for x in at.T]
+        return cls(len(at), [values for values, _ in each], [which for _, which in each])
+
+    def correlation(
+        self, others: np.ndarray, lengths: np.ndarray, usual: Sequence[Sequence[float]]
+    ) -> np.ndarray:
+        """Correlation (n, m) with places ``others`` (m, d); of a place that is NaN, the mean over its ``usual`` values."""
+        alike = np.ones((self.many, len(others)))
+        scales = zip(self.values, self.which, others.T, lengths, usual, strict=True)
+        for values, which, other, length, otherwise in scales:
+            rows = matern(np.abs(values[:, None] - other), length)
+            if otherwise and np.isnan(values[-1]):  # these are sorted
+                rows[-1] = np.mean(matern(np.abs(np.array(otherwise)[:, None] - other), length), axis=0)
+            alike *= rows[which]
+        return alike
+
+    def falls(self, others: np.ndarray, lengths: np.ndarray) -> Iterator[np.ndarray]:
+        """Derivatives (n, m) of its logarithm by the logarithm of each length."""
+        for values, which, other, length in zip(self.values, self.which, others.T, lengths, strict=True):
+            yield _falls(np.abs(values[:, None] - other), length)[which]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,15 +86,15 @@ class SmoothFunctions(ReadOnlyArrays):
         ``enough`` is the share of the variance that the nodes need not tell.
         """
         most = int(constants.FUNCTIONS)
-        process = cls.with_all(inputs, settings[:: max(1, len(settings) // (4 * most))], lengths, sign)
+        process = cls.with_all(inputs, settings[:: -(-len(settings) // (4 * most))], lengths, sign)
         places = process.nodes
-        at, load = process._placed(places), process._load(places)
+        at, load, ends = _Places.of(process._placed(places)), process._load(places), process._placed(places)
         untold, known, chosen = process.variance(places), np.zeros((most, len(places))), list[int]()
         while len(chosen) < min(most, len(places)):
             k, i = len(chosen), int(np.argmax(untold.round(6)))  # rounding must not choose between equal ones
             if chosen and untold[i] <= max(enough, SINGULAR):
                 break
-            whole = _of_loads(load, load[i]) * process._correlation(at, at[i])
+            whole = _of_loads(load, load[i]) * process._correlation(at, ends[[i]])[:, 0]
             left = whole - known[:k, i] @ known[:k]
             known[k] = left / np.sqrt(untold[i])
             untold = untold - known[k] ** 2
@@ -83,19 +118,15 @@ class SmoothFunctions(ReadOnlyArrays):
 
     def at_nodes(self, lengths: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
         """Covariance (m, m) of the values at the nodes for other lengths (d,), and its derivatives by the log of each."""
-        images = [(sign * self._by_load * matern(apart, lengths), apart) for sign, apart in self._apart]
-        whole = sum((alike for alike, _ in images), SINGULAR * np.eye(len(self.nodes)))
-        by_lengths = [
-            np.asarray(sum(alike * _falls(apart[i], length) for alike, apart in images))
-            for i, length in enumerate(lengths)
-        ]
-        return np.asarray(whole), by_lengths
-
-    @cached_property
-    def _apart(self) -> list[tuple[int, list[np.ndarray]]]:
-        """Signs, and distances (m, m) along every condition, of the nodes from each other and from their mirror images."""
         at = self._placed(self.nodes)
-        return [(sign, _distances(at[:, None], image)) for sign, image in self._images(at)]
+        places, whole = _Places.of(at), SINGULAR * np.eye(len(at))
+        by_lengths = [np.zeros(whole.shape) for _ in lengths]
+        for sign, image in self._images(at):
+            alike = sign * self._by_load * places.correlation(image, lengths, self._usual)
+            whole += alike
+            for slope, falls in zip(by_lengths, places.falls(image, lengths), strict=True):
+                slope += alike * falls
+        return whole, by_lengths
 
     @cached_property
     def _by_load(self) -> np.ndarray:
@@ -107,47 +138,73 @@ class SmoothFunctions(ReadOnlyArrays):
 
         Of a condition that is NaN, and over which predictions average, the mean over its usual values.
         """
-        alike = np.mean([self.covariance(one[:, None], self.nodes) for one in self._stated(at)], axis=0)
-        return np.asarray(solve_triangular(self.root, alike.T, lower=True).T)
+        alike = np.concatenate([*self._with_nodes(at)])
+        return np.asarray(
+            solve_triangular(self.root, alike.T, lower=True, overwrite_b=True, check_finite=False).T
+        )
 
-    def covariance(self, at: np.ndarray, others: np.ndarray) -> np.ndarray:
-        """Of the process of unit size, between conditions (..., d) and others (..., d), clipped to the tested range."""
-        alike = self._correlation(self._placed(at), self._placed(others))
-        return np.asarray(_of_loads(self._load(at), self._load(others)) * alike)
+    def estimate(self, weights: np.ndarray, at: np.ndarray) -> np.ndarray:
+        """Sum (n,) of the functions with ``weights`` (m,) at conditions (n, d), as :meth:`fading`."""
+        pull = solve_triangular(self.root, weights, lower=True, trans="T")
+        return np.asarray(self._left(at) * np.concatenate([alike @ pull for alike in self._with_nodes(at)]))
+
+    def _with_nodes(self, at: np.ndarray) -> Iterator[np.ndarray]:
+        """Covariance of the process of unit size between conditions (n, d), as in :meth:`columns`, and the m nodes.
+
+        It comes in blocks (64, m), which stay in the processor's fast memory.
+        """
+        nodes, load = self._placed(self.nodes), self._load(self.nodes)
+        for begin in range(0, max(len(at), 1), BLOCK):
+            block = at[begin : begin + BLOCK]
+            alike = self._correlation(_Places.of(self._placed(block)), nodes)
+            yield _of_loads(self._load(block)[:, None], load) * alike
 
     def variance(self, at: np.ndarray) -> np.ndarray:
         """Of the process of unit size, at conditions (n, d); conditions that are NaN as in :meth:`columns`."""
-        each = [*self._stated(at)]
-        return np.asarray(np.mean([self.covariance(*two) for two in itertools.product(each, each)], axis=0))
+        return self._covariance(at, at)
+
+    def _covariance(self, at: np.ndarray, others: np.ndarray) -> np.ndarray:
+        """Covariance (n,) of the process of unit size between conditions (n, d) and others (n, d)."""
+        places, alike = self._placed(at), np.zeros(len(at))
+        for sign, image in self._images(self._placed(others)):
+            product = np.full(len(at), float(sign))
+            for x, other, length, usual in zip(places.T, image.T, self.lengths, self._usual, strict=True):
+                own = matern(np.abs(x - other), length)
+                if usual:
+                    values = np.array(usual)
+                    own[np.isnan(own)] = np.mean(matern(np.abs(values[:, None] - values), length))
+                product *= own
+            alike += product
+        return _of_loads(self._load(at), self._load(others)) * alike
 
     def untold_change(self, pair: np.ndarray) -> float:
         """Variance of the process's change between two conditions (2, d) that its values at the nodes do not tell."""
-        one, other = pair
-        whole = sum(self.covariance(at, at) for at in pair) - 2.0 * self.covariance(one, other)
+        whole = np.sum(self._covariance(pair, pair)) - 2.0 * self._covariance(*pair[:, None])[0]
         told, others = self.fading(pair)
         return max(float(whole - np.sum((told - others) ** 2)), 0.0)
 
     def fading(self, at: np.ndarray) -> np.ndarray:
-        """Values (n, m) at conditions (n, d), which fade with the :meth:`squared_distance` from the tested ones."""
-        return np.asarray(np.exp(-0.5 * self.squared_distance(at))[:, None] * self.columns(at))
+        """Values (n, m) at conditions (n, d), which fade with the distance from the tested ones."""
+        return np.asarray(self._left(at)[:, None] * self.columns(at))
 
     def faded(self, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Variance (n,) of the process of unit size at conditions (n, d) that the nodes do not tell, and :meth:`fading`."""
         functions = self.fading(at)
         return np.maximum(self.variance(at) - np.sum(functions**2, axis=1), 0.0), functions
 
-    def squared_distance(self, at: np.ndarray) -> np.ndarray:
-        """Squared distance (n,) of conditions (n, d) from the nearest tested ones, in lengths; 0 inside the range.
-
-        A condition that is NaN counts as tested.
-        """
+    def _left(self, at: np.ndarray) -> np.ndarray:
+        """What is left (n,) of the functions at conditions (n, d) outside the tested range; one that is NaN counts as tested."""
         distance = np.nan_to_num(at - self._clipped(at)) / self.lengths
-        return np.asarray(np.sum(distance**2, axis=1))
+        return np.asarray(np.exp(-0.5 * np.sum(distance**2, axis=1)))
 
-    def _correlation(self, at: np.ndarray, others: np.ndarray) -> np.ndarray:
-        """Between places (..., d) and others (..., d), and the mirror images of these."""
-        each = (sign * matern(_distances(at, image), self.lengths) for sign, image in self._images(others))
-        return np.asarray(sum(each))
+    def _correlation(self, at: _Places, others: np.ndarray) -> np.ndarray:
+        """Between places (n,) and others (m, d), and the mirror images of these."""
+        return np.asarray(
+            sum(
+                sign * at.correlation(image, self.lengths, self._usual)
+                for sign, image in self._images(others)
+            )
+        )
 
     def _images(self, at: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
         """Places (..., d), and their mirror images if any condition is mirrored, with the sign of the functions there."""
@@ -175,14 +232,10 @@ class SmoothFunctions(ReadOnlyArrays):
         lower, upper = ([getattr(one, end) for one in self.inputs] for end in ("lower", "upper"))
         return np.asarray(np.clip(at, lower, upper))
 
-    def _stated(self, at: np.ndarray) -> Iterator[np.ndarray]:
-        """The conditions (n, d), once for every combination of usual values of those that are NaN somewhere."""
-        usual = [
-            one.averaged if one.averaged and np.any(np.isnan(x)) else (np.nan,)
-            for one, x in zip(self.inputs, at.T, strict=True)
-        ]
-        for values in itertools.product(*usual):
-            yield np.where(np.isnan(at), np.reshape(values, (1, -1)), at)
+    @property
+    def _usual(self) -> list[tuple[float, ...]]:
+        """Values (d,) over which predictions average that do not state a condition; empty where all do."""
+        return [one.averaged for one in self.inputs]
 
 
 CONSTANT = SmoothFunctions((), np.zeros((1, 0)), np.zeros(0))
@@ -194,26 +247,10 @@ def _of_loads(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     return np.asarray(0.5 * (1.0 + one * other))
 
 
-def _distances(at: np.ndarray, others: np.ndarray) -> list[np.ndarray]:
-    """Distances of places (..., d) from others (..., d), along each condition; an empty one if there is no condition."""
-    apart = [np.asarray(np.abs(at[..., i] - others[..., i])) for i in range(at.shape[-1])]
-    return apart or [np.zeros(np.broadcast_shapes(at.shape[:-1], others.shape[:-1]))]
-
-
-def matern(apart: Sequence[np.ndarray], lengths: Sequence[float] | np.ndarray) -> np.ndarray:
-    """Correlation at distances ``apart`` along every condition, with length scales (d,)."""
-    whole, alike = np.zeros(apart[0].shape), np.ones(apart[0].shape)
-    for one, length in zip(apart, lengths, strict=False):
-        far = one * (np.sqrt(5.0) / length)
-        whole -= far
-        # 1 + far + far^2 / 3, in the memory at hand: much of the time of a search goes here
-        bend = far * (1.0 / 3.0)
-        bend += 1.0
-        bend *= far
-        bend += 1.0
-        alike *= bend
-    alike *= np.exp(whole, out=whole)
-    return np.asarray(alike)
+def matern(apart: np.ndarray, length: float) -> np.ndarray:
+    """Correlation at distances ``apart`` along a condition."""
+    far = apart * (np.sqrt(5.0) / length)
+    return np.asarray((1.0 + far * (1.0 + far / 3.0)) * np.exp(-far))
 
 
 def _falls(apart: np.ndarray, length: float) -> np.ndarray:

@@ -115,19 +115,21 @@ def _whole(at: pd.DataFrame, fitted: Tyre) -> pd.DataFrame:
 
 
 def _grid(missed: _Missed, inputs: Mapping[str, tuple[float, float]]) -> _Grid:
-    """The coarsest grid whose interpolation error along every input stays within the allowed share.
+    """The coarsest grid whose interpolation error along every input stays within its share of the allowed one.
 
-    All inputs get the same share of the allowed error. If the grid has too many nodes, the allowed error is increased.
+    The input with the largest error gets the next node, until all are within it or there are too many nodes.
     """
     random = np.random.default_rng(0)
     n = max(len(missed.known.channels[name].missed) for name in missed.names)
     at = pd.DataFrame({name: random.uniform(*ends, n) for name, ends in inputs.items()})
     drawn, share = _Drawn(missed, at, missed(at)), constants.INTERPOLATION_ADDS / np.sqrt(len(inputs))
-    while True:
-        nodes = {name: _nodes(drawn, name, ends, share) for name, ends in inputs.items()}
-        if np.prod([len(own) for own in nodes.values()]) <= constants.MOST_NODES:
+    nodes = {name: _nodes(ends, 1) for name, ends in inputs.items()}
+    off = {name: drawn.off_along(name, own) for name, own in nodes.items()}
+    while off[worst := max(off, key=lambda name: off[name])] > share:
+        more = nodes | {worst: _nodes(inputs[worst], len(nodes[worst]))}
+        if np.prod([len(own) for own in more.values()]) > constants.MOST_NODES:
             break
-        share *= np.sqrt(2.0)
+        nodes, off[worst] = more, drawn.off_along(worst, more[worst])
     whole = pd.DataFrame(itertools.product(*nodes.values()), columns=list(nodes))
     found = missed(whole)
     values = np.column_stack([*found.values()]).reshape(*(len(own) for own in nodes.values()), len(found))
@@ -146,20 +148,18 @@ class _Drawn(NamedTuple):
         """Rms error of the interpolated model error over its rms, for the worst channel."""
         return max(rms(lines[name] - exact) / max(rms(exact), 1e-12) for name, exact in self.exact.items())
 
-
-def _nodes(drawn: _Drawn, name: str, ends: tuple[float, float], share: float) -> np.ndarray:
-    """The fewest nodes of an input with an interpolation error of at most ``share`` of the model error in every channel."""
-    x, intervals = drawn.at[name].to_numpy(), 1
-    while True:
-        nodes = np.array([float(f"{node:.4g}") for node in np.linspace(*ends, intervals + 1)])
-        below = np.clip(np.searchsorted(nodes, x) - 1, 0, intervals - 1)
-        low, high = (drawn.missed(drawn.at.assign(**{name: nodes[below + k]})) for k in (0, 1))
+    def off_along(self, name: str, nodes: np.ndarray) -> float:
+        """The same, if it is interpolated along one input only."""
+        x = self.at[name].to_numpy()
+        below = np.clip(np.searchsorted(nodes, x) - 1, 0, len(nodes) - 2)
+        low, high = (self.missed(self.at.assign(**{name: nodes[below + k]})) for k in (0, 1))
         weight = (x - nodes[below]) / (nodes[below + 1] - nodes[below])
-        off = drawn.off({key: (1.0 - weight) * low[key] + weight * high[key] for key in low})
-        if off <= share:
-            return nodes
-        # The error of linear interpolation is proportional to the square of the spacing.
-        intervals = max(intervals + 1, int(intervals * np.sqrt(off / share)))
+        return self.off({key: (1.0 - weight) * low[key] + weight * high[key] for key in low})
+
+
+def _nodes(ends: tuple[float, float], intervals: int) -> np.ndarray:
+    """Nodes of an input, at equal distances."""
+    return np.array([float(f"{node:.4g}") for node in np.linspace(*ends, intervals + 1)])
 
 
 def _fading(known: Predictor, name: str, nodes: Mapping[str, np.ndarray]) -> dict[str, float]:

@@ -92,7 +92,7 @@ class MissedChannel(ReadOnlyArrays):
 
     def mean(self, settings: np.ndarray) -> np.ndarray:
         """The model error (n,) alone, as in :meth:`at`, averaged over conditions that are NaN."""
-        return np.asarray(self.smooth.fading(settings) @ self.missed)
+        return self.smooth.estimate(self.missed, settings)
 
     def u(self, settings: np.ndarray, slopes: np.ndarray) -> np.ndarray:
         """Standard uncertainty (n,) of coefficients and model error together; ``settings`` and ``slopes`` as in :meth:`at`."""

@@ -114,11 +114,13 @@ def test_beyond_the_tested_range_the_functions_stay_and_fade():
         smooth.variance(settings) * (1.0 - np.exp([0.0, 0.0, -2.0, -1.0])), abs=1e-6
     )
     assert faded[2] == pytest.approx(columns[2] * np.exp(-1.0))
+    weights = np.array([1.0, -2.0, 0.5])
+    assert smooth.estimate(weights, settings) == pytest.approx(faded @ weights)
 
 
 def test_a_tyre_at_one_condition_has_a_constant_only():
     assert np.allclose(CONSTANT.columns(np.empty((3, 0))), np.ones((3, 1)))
-    assert np.array_equal(CONSTANT.squared_distance(np.empty((3, 0))), np.zeros(3))
+    assert CONSTANT.fading(np.empty((3, 0))) == pytest.approx(np.ones((3, 1)))
 
 
 def test_many_readings_keep_to_the_most_functions():
