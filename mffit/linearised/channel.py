@@ -78,6 +78,12 @@ class LinearisedChannel(ReadOnlyArrays):
         return self.alone.smooth
 
     @cached_property
+    def chosen_anew(self) -> SmoothFunctions:
+        """The functions whose nodes are the best for the lengths that were found with those of :attr:`smooth`."""
+        seen, enough = self.seen, self.components.enough(self.unit)
+        return SmoothFunctions.over(seen.inputs, seen.settings, self.components.lengths, seen.sign, enough)
+
+    @cached_property
     def slopes(self) -> np.ndarray:
         """Derivatives (n, k) of the readings by the fit's numbers, over ``unit``."""
         return np.asarray(self.model.common[:, len(self.missed) :] @ np.linalg.inv(self.turn))

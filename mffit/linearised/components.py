@@ -7,11 +7,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 from mffit.constants import CERTAIN_SIGMA, FALSE_ALARM
 from mffit.linearised import constants
-from mffit.linearised.gaussian import lower_root
+from mffit.linearised.gaussian import lower_inverse, lower_root, times_lower, within_lower
 from mffit.linearised.mixed import Mixed, Variances
 from mffit.linearised.search import Scored, Scoring, SearchedParameter, flat, normal
 from mffit.linearised.smooth import SINGULAR, SmoothFunctions
@@ -111,7 +110,7 @@ class Terms(ReadOnlyArrays):
     def _turn(self, root: np.ndarray) -> np.ndarray:
         """Matrix that turns the columns into those of functions with another ``root`` (m, m) of their values at the nodes."""
         turn = np.eye(len(root) + len(self.further))
-        turn[: len(root), : len(root)] = solve_triangular(self.smooth.root, root, lower=True)
+        turn[: len(root), : len(root)] = times_lower(self.smooth.back, root)
         return turn
 
     def most_probable(
@@ -148,8 +147,8 @@ class Terms(ReadOnlyArrays):
         alike, by_lengths = self.smooth.at_nodes(np.array(at.lengths))
         root = lower_root(alike)
         found = self.model.evidence(self.variances(at), self._turn(root))
-        back = solve_triangular(root, np.eye(m), lower=True)
-        pull = back.T @ found.common[:m, :m] @ back
+        back = lower_inverse(root)
+        pull = within_lower(found.common[:m, :m], back)
         told = lower_root(found.told[:m, :m] + SINGULAR * np.eye(m))
         probes = told @ _signs(m)
         aside, moved, slope = back.T @ probes, np.zeros((len(x), probes.size)), found.own @ by_own

@@ -117,7 +117,7 @@ def linearised(
         simulation,
         numbers,
         np.zeros(0, int) if without is None else without,
-        {} if near is None else {n: own.components for n, own in near.channels.items()},
+        {} if near is None else near.channels,
         {},
     )
     found = {}
@@ -136,7 +136,7 @@ class _Sight(NamedTuple):
     simulation: Simulation
     numbers: Sequence[Uncertain]
     without: np.ndarray
-    near: Mapping[str, Components]  #: by channel
+    near: Mapping[str, LinearisedChannel]  #: of a similar fit
     looked_at: dict[tuple[bytes, int], LookedAt]  #: cache by the rows, which are equal for most channels
 
     def at(self, rows: np.ndarray, channel: str) -> LookedAt:
@@ -215,29 +215,33 @@ def _likely(
     seen: LookedAt,
     name: str,
     unit: np.ndarray,
-    near: Components | None,
+    near: LinearisedChannel | None,
 ) -> tuple[Terms, Components]:
     """The terms with smooth functions of the likely lengths, and the components of the largest evidence.
 
-    ``alone`` has no smooth functions; its residuals are over ``unit`` (n,). Without ``near``, the linear model of a similar
-    fit, some readings find the lengths, each of them a node.
+    ``alone`` has no smooth functions; its residuals are over ``unit`` (n,). Without ``near``, the channel of a similar fit,
+    some readings find the lengths, each of them a node.
     """
 
     def of(smooth: SmoothFunctions) -> Terms:
         return Terms(seen.with_functions(alone, name, smooth, unit), smooth, declared)
 
-    if near is not None and len(near.lengths) != len(seen.inputs):
-        near = None  # one of both fits rejects every reading in which a condition varies
-    if near is None:
+    if near is not None and len(near.seen.inputs) == len(seen.inputs):
+        begin = near.components
+    else:  # nothing is near, or one of both fits rejects every reading in which a condition varies
         rows = np.concatenate(list(alone.groups))
         some = rows[np.unique(np.linspace(0, len(rows) - 1, int(constants.READINGS_AT_FIRST)).astype(int))]
         part, usual = seen.only(some), [one.usual_length for one in seen.inputs]
         every = SmoothFunctions.with_all(seen.inputs, part.settings, usual, seen.sign)
         terms = Terms(part.with_functions(alone.only(some), name, every, unit[some]), every, declared)
-        near = terms.most_probable(unit[some])
-    enough = near.enough(unit)
-    terms = of(SmoothFunctions.over(seen.inputs, seen.settings, near.lengths, seen.sign, enough))
-    found = terms.most_probable(unit, near)
+        begin = terms.most_probable(unit[some])
+    if near is not None and np.array_equal(near.seen.settings, seen.settings):
+        terms = of(near.chosen_anew)
+    else:
+        terms = of(
+            SmoothFunctions.over(seen.inputs, seen.settings, begin.lengths, seen.sign, begin.enough(unit))
+        )
+    found = terms.most_probable(unit, begin)
     return of(replace(terms.smooth, lengths=np.array(found.lengths))), found
 
 

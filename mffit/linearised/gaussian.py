@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg.blas import dtrmm
 from scipy.linalg.lapack import dpotrf, dpotrs, dtrtri
 
 from tir.frozen import ReadOnlyArrays
@@ -22,6 +23,21 @@ def lower_root(covariance: np.ndarray) -> np.ndarray:
     if failed:
         raise np.linalg.LinAlgError("the covariance is not positive definite")
     return np.asarray(root)
+
+
+def lower_inverse(root: np.ndarray) -> np.ndarray:
+    """Inverse (m, m) of a lower triangle."""
+    return np.asarray(dtrtri(root, lower=1)[0])
+
+
+def times_lower(matrix: np.ndarray, lower: np.ndarray) -> np.ndarray:
+    """A matrix (n, m) times a lower triangle (m, m), in half the time of a full product."""
+    return np.asarray(dtrmm(1.0, lower.T, matrix.T).T)
+
+
+def within_lower(symmetric: np.ndarray, lower: np.ndarray) -> np.ndarray:
+    """lower.T @ symmetric @ lower (m, m), for a lower triangle."""
+    return times_lower(times_lower(symmetric, lower).T, lower)
 
 
 class Directions(NamedTuple):

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.linalg.blas import dtrmm
 
-from mffit.linearised.gaussian import Informed
+from mffit.linearised.gaussian import Informed, times_lower, within_lower
 from mffit.rig import successive
 from tir.frozen import ReadOnlyArrays
 
@@ -116,7 +116,10 @@ class Mixed(ReadOnlyArrays):
         return out
 
     def evidence(self, given: Variances, turn: np.ndarray | None = None) -> MixedEvidence:
-        """The log marginal likelihood for given variances, of the model whose common columns are ``common @ turn`` (m, m)."""
+        """The log marginal likelihood for given variances.
+
+        It is that of the model whose common columns are ``common @ turn``, by a lower triangle (m, m).
+        """
         sums = self._sums if turn is None else self._sums.turned(turn)
         found = sums.posterior(given)
         w, gain = np.exp(-given.noise), found.gain
@@ -228,12 +231,14 @@ class _Sums(NamedTuple):
     readings: int
 
     def turned(self, turn: np.ndarray) -> _Sums:
-        """The sums of the columns ``common @ turn`` (m, m)."""
-        common, pull = turn.T @ self.common @ turn, turn.T @ self.pull
-        across = (
-            self.across.reshape(self.own_pull.size, len(turn)) @ turn
-        )  # one product is faster than many small ones
-        return self._replace(common=common, pull=pull, across=across.reshape(self.across.shape))
+        """The sums of the columns ``common @ turn`` by a lower triangle (m, m)."""
+        # one product is faster than many small ones
+        across = times_lower(self.across.reshape(self.own_pull.size, len(turn)), turn)
+        return self._replace(
+            common=within_lower(self.common, turn),
+            pull=turn.T @ self.pull,
+            across=across.reshape(self.across.shape),
+        )
 
     def posterior(self, given: Variances) -> MixedPosterior:
         """The posterior of the common numbers for given variances."""

@@ -16,10 +16,10 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import solve_triangular
+from scipy.linalg.blas import dtrmm
 
 from mffit.linearised import constants
-from mffit.linearised.gaussian import lower_root
+from mffit.linearised.gaussian import lower_inverse, lower_root
 from mffit.linearised.inputs import Input
 from tir.constants import SMALLEST_LOAD
 from tir.frozen import ReadOnlyArrays
@@ -112,9 +112,9 @@ class SmoothFunctions(ReadOnlyArrays):
         return cls(inputs, settings[first], np.array(lengths, dtype=float), sign)
 
     @cached_property
-    def root(self) -> np.ndarray:
-        """Lower triangle (m, m) of the values at the nodes by the weights."""
-        return lower_root(self.at_nodes(self.lengths)[0])
+    def back(self) -> np.ndarray:
+        """Lower triangle (m, m) of the weights by the values at the nodes."""
+        return lower_inverse(lower_root(self.at_nodes(self.lengths)[0]))
 
     def at_nodes(self, lengths: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
         """Covariance (m, m) of the values at the nodes for other lengths (d,), and its derivatives by the log of each."""
@@ -139,13 +139,11 @@ class SmoothFunctions(ReadOnlyArrays):
         Of a condition that is NaN, and over which predictions average, the mean over its usual values.
         """
         alike = np.concatenate([*self._with_nodes(at)])
-        return np.asarray(
-            solve_triangular(self.root, alike.T, lower=True, overwrite_b=True, check_finite=False).T
-        )
+        return np.asarray(dtrmm(1.0, self.back, alike.T, lower=1, overwrite_b=1).T)
 
     def estimate(self, weights: np.ndarray, at: np.ndarray) -> np.ndarray:
         """Sum (n,) of the functions with ``weights`` (m,) at conditions (n, d), as :meth:`fading`."""
-        pull = solve_triangular(self.root, weights, lower=True, trans="T")
+        pull = self.back.T @ weights
         return np.asarray(self._left(at) * np.concatenate([alike @ pull for alike in self._with_nodes(at)]))
 
     def _with_nodes(self, at: np.ndarray) -> Iterator[np.ndarray]:

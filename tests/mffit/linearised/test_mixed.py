@@ -66,7 +66,7 @@ def test_information_about_the_variances_is_that_of_the_dense_gaussian(model):
 
 
 def test_turned_columns_have_the_evidence_of_their_own_model(model):
-    turn = np.random.default_rng(5).standard_normal((3, 3))
+    turn = np.tril(np.random.default_rng(5).standard_normal((3, 3)))
     alone, found = (
         replace(model, common=model.common @ turn).evidence(GIVEN),
         model.evidence(GIVEN, turn),
