@@ -35,25 +35,25 @@ class _Places(NamedTuple):
     """Places of n conditions on d scales; of the equal values along a scale, covariances are computed once."""
 
     many: int  #: n
+    usual: Sequence[Sequence[float]]
+    """(d,) values over which correlations of a place that is NaN are averaged; empty if it stays NaN."""
     values: list[np.ndarray]  #: (d,) different values along every scale
     which: list[np.ndarray]  #: (d, n) index of each place's value
 
     @classmethod
-    def of(cls, at: np.ndarray) -> _Places:
+    def of(cls, at: np.ndarray, usual: Sequence[Sequence[float]]) -> _Places:
         """The places (n, d)."""
         each = [np.unique(x, return_inverse=True) for x in at.T]
-        return cls(len(at), [values for values, _ in each], [which for _, which in each])
+        return cls(len(at), usual, [values for values, _ in each], [which for _, which in each])
 
-    def correlation(
-        self, others: np.ndarray, lengths: np.ndarray, usual: Sequence[Sequence[float]]
-    ) -> np.ndarray:
-        """Correlation (n, m) with places ``others`` (m, d); of a place that is NaN, the mean over its ``usual`` values."""
+    def correlation(self, others: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+        """Correlation (n, m) with places ``others`` (m, d)."""
         alike = np.ones((self.many, len(others)))
-        scales = zip(self.values, self.which, others.T, lengths, usual, strict=True)
-        for values, which, other, length, otherwise in scales:
+        scales = zip(self.values, self.which, self.usual, others.T, lengths, strict=True)
+        for values, which, usual, other, length in scales:
             rows = matern(np.abs(values[:, None] - other), length)
-            if otherwise and np.isnan(values[-1]):  # these are sorted
-                rows[-1] = np.mean(matern(np.abs(np.array(otherwise)[:, None] - other), length), axis=0)
+            if usual and np.isnan(values[-1]):  # they are sorted
+                rows[-1] = np.mean(matern(np.abs(np.array(usual)[:, None] - other), length), axis=0)
             alike *= rows[which]
         return alike
 
@@ -88,13 +88,13 @@ class SmoothFunctions(ReadOnlyArrays):
         most = int(constants.FUNCTIONS)
         process = cls.with_all(inputs, settings[:: -(-len(settings) // (4 * most))], lengths, sign)
         places = process.nodes
-        at, load, ends = _Places.of(process._placed(places)), process._load(places), process._placed(places)
+        at, load, scaled = process._scaled(places), process._load(places), process._placed(places)
         untold, known, chosen = process.variance(places), np.zeros((most, len(places))), list[int]()
         while len(chosen) < min(most, len(places)):
             k, i = len(chosen), int(np.argmax(untold.round(6)))  # rounding must not choose between equal ones
             if chosen and untold[i] <= max(enough, SINGULAR):
                 break
-            whole = _of_loads(load, load[i]) * process._correlation(at, ends[[i]])[:, 0]
+            whole = _of_loads(load, load[i]) * process._correlation(at, scaled[[i]])[:, 0]
             left = whole - known[:k, i] @ known[:k]
             known[k] = left / np.sqrt(untold[i])
             untold = untold - known[k] ** 2
@@ -119,10 +119,10 @@ class SmoothFunctions(ReadOnlyArrays):
     def at_nodes(self, lengths: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
         """Covariance (m, m) of the values at the nodes for other lengths (d,), and its derivatives by the log of each."""
         at = self._placed(self.nodes)
-        places, whole = _Places.of(at), SINGULAR * np.eye(len(at))
+        places, whole = self._scaled(self.nodes), SINGULAR * np.eye(len(at))
         by_lengths = [np.zeros(whole.shape) for _ in lengths]
         for sign, image in self._images(at):
-            alike = sign * self._by_load * places.correlation(image, lengths, self._usual)
+            alike = sign * self._by_load * places.correlation(image, lengths)
             whole += alike
             for slope, falls in zip(by_lengths, places.falls(image, lengths), strict=True):
                 slope += alike * falls
@@ -154,7 +154,7 @@ class SmoothFunctions(ReadOnlyArrays):
         nodes, load = self._placed(self.nodes), self._load(self.nodes)
         for begin in range(0, max(len(at), 1), BLOCK):
             block = at[begin : begin + BLOCK]
-            alike = self._correlation(_Places.of(self._placed(block)), nodes)
+            alike = self._correlation(self._scaled(block), nodes)
             yield _of_loads(self._load(block)[:, None], load) * alike
 
     def variance(self, at: np.ndarray) -> np.ndarray:
@@ -166,10 +166,10 @@ class SmoothFunctions(ReadOnlyArrays):
         places, alike = self._placed(at), np.zeros(len(at))
         for sign, image in self._images(self._placed(others)):
             product = np.full(len(at), float(sign))
-            for x, other, length, usual in zip(places.T, image.T, self.lengths, self._usual, strict=True):
+            for x, other, length, one in zip(places.T, image.T, self.lengths, self.inputs, strict=True):
                 own = matern(np.abs(x - other), length)
-                if usual:
-                    values = np.array(usual)
+                if one.averaged:
+                    values = np.array(one.averaged)
                     own[np.isnan(own)] = np.mean(matern(np.abs(values[:, None] - values), length))
                 product *= own
             alike += product
@@ -198,10 +198,7 @@ class SmoothFunctions(ReadOnlyArrays):
     def _correlation(self, at: _Places, others: np.ndarray) -> np.ndarray:
         """Between places (n,) and others (m, d), and the mirror images of these."""
         return np.asarray(
-            sum(
-                sign * at.correlation(image, self.lengths, self._usual)
-                for sign, image in self._images(others)
-            )
+            sum(sign * at.correlation(image, self.lengths) for sign, image in self._images(others))
         )
 
     def _images(self, at: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
@@ -209,6 +206,9 @@ class SmoothFunctions(ReadOnlyArrays):
         yield 1, at
         if any(one.mirrored for one in self.inputs):
             yield self.sign, np.where([one.mirrored for one in self.inputs], -at, at)
+
+    def _scaled(self, at: np.ndarray) -> _Places:
+        return _Places.of(self._placed(at), [one.averaged for one in self.inputs])
 
     def _placed(self, at: np.ndarray) -> np.ndarray:
         """Places (..., d) of conditions on the scales along which the lengths are the same everywhere."""
@@ -229,11 +229,6 @@ class SmoothFunctions(ReadOnlyArrays):
     def _clipped(self, at: np.ndarray) -> np.ndarray:
         lower, upper = ([getattr(one, end) for one in self.inputs] for end in ("lower", "upper"))
         return np.asarray(np.clip(at, lower, upper))
-
-    @property
-    def _usual(self) -> list[tuple[float, ...]]:
-        """Values (d,) over which predictions average that do not state a condition; empty where all do."""
-        return [one.averaged for one in self.inputs]
 
 
 CONSTANT = SmoothFunctions((), np.zeros((1, 0)), np.zeros(0))
