@@ -12,7 +12,7 @@ from mffit.fit.problem import FitProblem
 from mffit.linearised import LinearisedChannel, LinearisedFit
 from mffit.linearised.components import own_columns
 from mffit.linearised.fitted import unit_of
-from mffit.linearised.inputs import along, settings_of, turned
+from mffit.linearised.inputs import along, settings_of, steadied, turned
 from mffit.linearised.mixed import Mixed, MixedPosterior
 from mffit.scatter import beyond
 from tir.frozen import ReadOnlyArrays
@@ -55,6 +55,7 @@ def _judged(
         channel, residual = left.channels[name], points.channel(name) - readings[name]
         inputs, unit = channel.smooth.inputs, unit_of(points, name, problem.sigma[name][channel.rows])
         place = along(felt, inputs)
+        steady = problem.simulation.readings(steadied(points, inputs), [name])
         others = _OfOthers(
             channel=channel,
             sweep=points.sweep,
@@ -64,7 +65,7 @@ def _judged(
             columns=(turned(points, name) / unit)[:, None]
             * channel.smooth.columns(settings_of(felt, inputs)),
             place=place,
-            own=own_columns(readings[name], place) / unit[:, None],
+            own=own_columns(steady[name], place) / unit[:, None],
         )
         found[i], standing = others.suspects(suspects[i], far)
         wrong[i] = found[i] & (standing > far)

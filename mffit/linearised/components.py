@@ -65,7 +65,12 @@ class Components:
 
 
 def own_columns(force: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Columns (n, q) of each run's random effects: constant, force, and cosines along the swept setting (0 to 1)."""
+    """Columns (n, q) of each run's random effects: constant, force, and cosines along the swept setting (0 to 1).
+
+    The ``force`` (n,) is that of the formula at the mean of every setting that the run holds, as the model error is. Readings
+    follow a fast wandering of the load less than the formula does: large scales of the runs, cancelled by an opposite model
+    error, would describe this if the wandering were in the columns.
+    """
     order = np.arange(1, constants.FUNCTIONS_OF_A_RUN + 1)
     waves = np.sqrt(2.0) * np.cos(np.pi * order * along[:, None])
     return np.column_stack([np.ones(len(force)), force, waves])

@@ -16,7 +16,7 @@ from mffit.linearised.combined import Combinations
 from mffit.linearised.components import LIKELY_EVIDENCE, Components, Terms, own_columns
 from mffit.linearised.ends import growths
 from mffit.linearised.gaussian import Informed
-from mffit.linearised.inputs import along, inputs_of, settings_of
+from mffit.linearised.inputs import along, inputs_of, settings_of, steadied
 from mffit.linearised.mixed import Mixed
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
@@ -175,7 +175,8 @@ def _channel(
     part = seen.points
     unit = unit_of(part, name, sigma[rows])
     groups = [*part.rows_of_sweeps.values()]
-    own = own_columns(model[rows], seen.along)
+    steady = sight.simulation.readings(steadied(part, seen.inputs), [name])
+    own = own_columns(steady[name], seen.along)
     if len(groups) == 1:  # random effects are not identifiable, and would absorb the model error
         own = np.zeros_like(own)
     slopes = sight.simulation.sensitivities(part, [number.name for number in sight.numbers], [name])[1][name]

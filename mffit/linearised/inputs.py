@@ -210,19 +210,23 @@ def sense_of_slip(points: Points, inputs: Sequence[Input]) -> np.ndarray:
     return out
 
 
+def steadied(points: Points, inputs: Sequence[Input]) -> Points:
+    """The points with every condition that a run holds at the run's mean, which removes control errors."""
+    spacing = dict.fromkeys(levels.KINDS, np.inf) | {one.name: one.spacing for one in inputs}
+    held = {name: np.array(getattr(points, name), dtype=float) for name in spacing.keys() - {"T", "sense"}}
+    for name, values in held.items():
+        for rows in points.rows_of_sweeps.values():
+            if _width(values[rows]) < spacing[name]:
+                values[rows] = values[rows].mean()
+    return points.replace(**held)
+
+
 def settings_of(points: Points, inputs: tuple[Input, ...]) -> np.ndarray:
-    """The conditions (n, d); a condition that a run holds is replaced by the run's mean, which removes control errors."""
-    points = forwards(points)
-    out = np.empty((len(points), len(inputs)))
+    """The conditions (n, d) of the :func:`steadied` points."""
+    steady, out = forwards(steadied(points, inputs)), np.empty((len(points), len(inputs)))
     for i, one in enumerate(inputs):
-        if one.name == "sense":
-            out[:, i] = sense_of_slip(points, inputs)
-            continue
-        out[:, i] = getattr(points, one.name)
-        if one.name != "T":
-            for rows in points.rows_of_sweeps.values():
-                if _width(out[rows, i]) < one.spacing:
-                    out[rows, i] = out[rows, i].mean()
+        is_sense = one.name == "sense"
+        out[:, i] = sense_of_slip(forwards(points), inputs) if is_sense else getattr(steady, one.name)
     return out
 
 
