@@ -123,7 +123,8 @@ def _explained(
 def without_model_error(points: Points, chosen: ChosenModel, known: Asked) -> tuple[Points, Asked]:
     """The points without the model error that the build of the model found, and the question with what the build left then.
 
-    A formula misses the same tyre alike in every campaign, so this is neither an effect nor noise.
+    A formula misses the same tyre alike in every campaign, so this is neither an effect nor noise. A plain file beside one that
+    holds at a temperature also misses by what its coefficients took up of the warming.
     """
     if not known.left or chosen.file is None:
         return points, known
@@ -131,18 +132,17 @@ def without_model_error(points: Points, chosen: ChosenModel, known: Asked) -> tu
         predictor, _, fitted = load(chosen.file.parent)
     except (InputError, TirError):  # a build of an earlier version, or a folder that was tidied
         return points, known
-    if dict(fitted.values) != dict(chosen.tyre.values):
-        return points, known
-    missed = {
-        name: own.size for name, own in predictor.channels.items() if own.is_proven and name in known.left
-    }
-    model = Simulation.of(fitted, turn_slip=predictor.curved)
-    u = {name: rms(predictor.u_missed(name, model, points)) for name in missed}
+    names = [name for name, own in predictor.channels.items() if own.is_proven and name in known.left]
+    model, given = (Simulation.of(tyre, turn_slip=predictor.curved) for tyre in (fitted, chosen.tyre))
+    beyond, plain = (one.readings(points, names) for one in (model, given))
+    moved = {name: beyond[name] - plain[name] for name in names}
+    missed = {name: math.hypot(predictor.channels[name].size, rms(moved[name])) for name in names}
+    u = {name: rms(predictor.u_missed(name, model, points)) for name in names}
     left = dict(known.left) | {
         name: math.hypot(math.sqrt(max(known.left[name] ** 2 - size**2, 0.0)), u[name])
         for name, size in missed.items()
     }
-    without = {name: points.channel(name) - predictor.missed(name, points) for name in missed}
+    without = {name: points.channel(name) - moved[name] - predictor.missed(name, points) for name in names}
     return points.replace(**without), replace(known, left=left, missed=missed)
 
 

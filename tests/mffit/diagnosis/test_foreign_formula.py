@@ -96,6 +96,32 @@ def test_what_a_build_left_of_its_own_readings_is_not_missing_in_others(built_br
     assert found.gap_examined.rms("Fy") < 0.85 * found.gap_before.rms("Fy")
 
 
+def warm(project: Path, seed: int) -> Path:
+    """The project with runs at temperatures of their own, drawn from 30 to 60 degC; friction falls by 0.5 % per kelvin."""
+    rng = np.random.default_rng(seed)
+    for path in sorted(project.parent.glob("*.csv")):
+        table, T = pd.read_csv(path), rng.uniform(30.0, 60.0)
+        less = 1.0 - 0.005 * (T - 45.0)
+        table.assign(T_degC=T, Fy_N=less * table["Fy_N"], Mz_Nm=less * table["Mz_Nm"]).to_csv(
+            path, index=False
+        )
+    return project
+
+
+def test_what_a_build_left_is_not_missing_beside_its_temperature_terms(tmp_path):
+    """The plain file also misses by what its coefficients took up of the warming, which is not that of other runs."""
+    folders = {seed: tmp_path / str(seed) for seed in (51, 81)}
+    for folder in folders.values():
+        folder.mkdir()
+    first, other = (warm(brush.written(Brush(), folder, seed), seed) for seed, folder in folders.items())
+    built = mffit.build(first, out=tmp_path / "out", with_report=False)
+    assert built.fit.temperature
+    found = mffit.diagnose(other, tmp_path / "out" / "brush.tir")
+    assert {one.effect.id for one in found.effects} == {"temperature"}
+    assert not found.unexplained
+    assert [note for note in found.notes if isinstance(note, WithoutModelError)]
+
+
 def test_zeros_of_the_rig_are_no_gap_beside_what_the_build_left(built_toy, tmp_path):
     """They lie within their declaration: nothing is missing, and the misfit is that of readings without them."""
     zeros = {"Fy_N": 8.0, "alpha_deg": 0.1, "gamma_deg": 0.4}
