@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.constants import FEWEST
+from mffit.constants import FEWEST, STRAIGHT
 from mffit.points import constants, levels
 from mffit.points.like import MeanReading, conditions, mean_readings, noise, rolling
 from mffit.points.points import Points
@@ -75,12 +75,18 @@ class _Difference(NamedTuple):
 
 def _difference(first: list[MeanReading], second: list[MeanReading], cell: Points) -> _Difference | None:
     """The difference of two files at common steps of sideslip, in rising order; None with too few."""
-    if len(first) < FEWEST + 2:  # two zeros are taken off
-        return None
-    (x, y, u), (x_other, y_other, u_other) = (
-        np.transpose([(one.alpha, one.Fy / one.Fz, np.nan_to_num(one.u) / one.Fz) for one in of])
-        for of in (first, second)
+    both = np.array(
+        [
+            [(one.alpha, one.Fy / one.Fz, np.nan_to_num(one.u) / one.Fz) for one in of]
+            for of in (first, second)
+        ]
     )
+    # an angle that is held between two steps is in both
+    apart = np.min(np.diff(both[:, :, 0], axis=1), axis=0) > 0.5 * STRAIGHT.rad
+    both = both[:, np.append(True, apart)]
+    if both.shape[1] < FEWEST + 2:  # two zeros are taken off
+        return None
+    (x, y, u), (x_other, y_other, u_other) = np.swapaxes(both, 1, 2)
     slope = np.gradient(y, x)
     change = y_other - y - slope * (x_other - x)
     zeros = np.column_stack([np.ones(len(x)), slope])  # of the force, and of the sideslip

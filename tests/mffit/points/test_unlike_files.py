@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -9,6 +11,7 @@ from flat_belt import recording, write_mat
 
 from mffit import build, points
 from mffit import config as configuration
+from mffit.constants import STRAIGHT
 from mffit.points.other_label import other_labels
 from mffit.points.unlike import unlike_files
 from mffit.recordings import sniff
@@ -81,6 +84,20 @@ def test_files_with_unlike_forces_are_said_with_the_numbers(config, other):
 )
 def test_a_run_of_the_same_tyre_is_not(config, other):
     assert not points.read(config(tyre(), tyre(seed=2, **other))).doubts
+
+
+def test_few_angles_that_are_held_do_not_show_the_curve(config):
+    """Of an angle between two steps some readings belong to either, no distance apart; they differ by 1 % of the force."""
+    step, random, rows = np.degrees(STRAIGHT.rad), np.random.default_rng(3), []
+    for k, (middle, side) in enumerate(product((-10.5, -4.5, 4.5, 10.5), (-1.0, 1.0))):
+        alpha = (middle + 0.02 * side) * step + 0.01 * random.standard_normal(200)
+        force = -(1.3 + 0.013 * side) * LOADS[1] * np.tanh(12.0 * np.radians(alpha))
+        rows.append(
+            {"time_s": 10.0 * k + np.arange(200) / 50.0, "alpha_deg": alpha, "gamma_deg": 0.0, "Fz_N": LOADS[1],
+             "Fy_N": force + 6.0 * random.standard_normal(200), "p_kPa": 100.0, "V_mps": 10.0}
+        )  # fmt: skip
+    held = pd.concat([pd.DataFrame(row) for row in rows], ignore_index=True)
+    assert not points.read(config(held, tyre())).doubts
 
 
 def test_files_without_a_common_condition_are_not_compared(config):
