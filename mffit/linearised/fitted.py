@@ -82,6 +82,20 @@ class LinearisedFit:
         without = Informed.by(information[np.ix_(others, others)], pull[others])
         return Informed.by(information, pull).gain - without.gain
 
+    def told_of(self, simulation: Simulation, spread: Mapping[str, float]) -> Informed:
+        """What the readings tell of further numbers beside all else: coefficients, model error and differences of runs.
+
+        ``spread`` are their prior standard deviations around the values of ``simulation``; they are unity in the result.
+        """
+        information, pull = np.zeros((len(spread), len(spread))), np.zeros(len(spread))
+        for name, channel in self.channels.items():
+            slopes = simulation.sensitivities(channel.seen.points, [*spread], [name])[1][name]
+            columns = slopes / channel.unit[:, None] * [*spread.values()]
+            found = channel.model.further(channel.variances, columns)
+            information = information + channel.stride * found.information
+            pull = pull + channel.stride * found.pull
+        return Informed.by(information, pull)
+
     @property
     def _with_prior(self) -> list[int]:
         """Indices of the numbers with a prior."""

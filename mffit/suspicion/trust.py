@@ -449,7 +449,7 @@ def many_at_limits(fit: FinishedFit) -> Iterator[Facts]:
     "else; repeat a condition to see whether it is there",
 )
 def sign_of_no_other(fit: FinishedFit) -> Iterator[Facts]:
-    """Sign of a temperature term or of a hysteresis, beyond what chance explains."""
+    """Sign of a stiffness over temperature or of a hysteresis, beyond what chance explains."""
     for name, (number, spread) in fit.rig.items():
         error = error_of(name)
         if error is not None and error.known_sign * number < ndtri(FALSE_ALARM) * spread:

@@ -7,20 +7,23 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import ndtri
 
 from mffit.as_json import keys
 from mffit.config import Config
-from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, MOST
+from mffit.constants import FALSE_ALARM, FEWEST_SWEEPS_TO_PREDICT, MOST
 from mffit.errors import InputError
-from mffit.fit.fitted import Fitted
+from mffit.fit.fitted import Fitted, uncertain
 from mffit.fit.influences.joint import JointFit, LeftOutGroups, beyond_chance
-from mffit.fit.influences.nuisances import NUISANCES, Nuisance
+from mffit.fit.influences.nuisances import NUISANCES, TEMPERATURE, Nuisance
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber, solve
 from mffit.left_out import clearly_above_zero
+from mffit.linearised import LinearisedFit
+from mffit.linearised.components import LIKELY_EVIDENCE
 from mffit.linearised.inputs import word_of
 from mffit.points import Points, levels
-from mffit.rig_errors import P_REF, T_REF, V_REF
+from mffit.rig_errors import BY_NAME, P_REF, T_REF, V_REF
 from mffit.suspicion import parts_of_sweeps
 
 Gaps = Mapping[str, float]
@@ -64,6 +67,7 @@ class NuisanceChoice:
 
 _WITHIN_CHANCE = "what it explains is within chance"
 _WORSE = "left-out sweeps are predicted worse with it"
+_AS_MODEL_ERROR = "what the formula misses explains it as well"
 _OF_NO_RIG = "no rig has one of this sign, so that it would take up something else"
 _TOO_FEW = f"fewer than {FEWEST_SWEEPS_TO_PREDICT} sweeps do not show whether it predicts them better"
 
@@ -100,14 +104,16 @@ def refuse_lacking(config: Config, points: Points) -> None:
             )
 
 
-def choose(config: Config, first: Fitted) -> NuisanceChoice:
+def choose(config: Config, first: Fitted, left: LinearisedFit | None = None) -> NuisanceChoice:
     """The influences that [fit] demands, and the significant ones.
 
-    ``first`` is the fit without influences. Forward selection: each step adds the influence with the largest gain. Meanwhile grip
-    and stiffness have a random effect per sweep, so that scatter between sweeps is not mistaken for an influence.
+    ``first`` is the fit without influences, ``left`` the linear model of its residuals. Forward selection: each step adds the
+    influence with the largest gain. Meanwhile grip and stiffness have a random effect per sweep, so that scatter between sweeps
+    is not mistaken for an influence.
     """
     points = first.problem.points
     refuse_lacking(config, points)
+    first = replace(first, problem=at_reference(config, first.problem))
     verdicts: dict[str, Verdict] = {}
     demanded, open_ = [], []
     for nuisance in NUISANCES:
@@ -124,14 +130,39 @@ def choose(config: Config, first: Fitted) -> NuisanceChoice:
     common = [[n for n in some if not n.per_run] for some in (demanded, open_)]
     scatter = dict[str, float]()
     numbers = [number for number in first.numbers if number.name not in first.at_bound]
-    model = NearSolution(at_reference(config, first.problem), numbers, ())
+    model = NearSolution(first.problem, numbers, ())
     if any(common) or of_runs:
-        judged, model = _judged(config, model, *common)
+        judged, model = _judged(config, model, common[0], common[1], _Formula(first, left))
         for nuisance in of_runs:
             verdict, scatter = _of_runs(config, model, nuisance, demanded=nuisance in demanded)
             judged[nuisance.id] = verdict
         verdicts |= judged
     return NuisanceChoice(tuple(verdicts[nuisance.id] for nuisance in NUISANCES), model, scatter)
+
+
+class _Formula(NamedTuple):
+    """The fit without influences, and the linear model of what it misses if that is known."""
+
+    fitted: Fitted
+    left: LinearisedFit | None
+
+    def refutes(self, nuisance: Nuisance, problem: FitProblem) -> str:
+        """Why a significant influence, with its numbers in the ``problem``, is not modelled, in words; empty if it is.
+
+        A sign or a size that no published tyre has asks whether the influence is the model error: the temperature may rise along
+        every sweep alike.
+        """
+        if nuisance.key != TEMPERATURE:
+            return _OF_NO_RIG if nuisance.of_no_rig(problem) else ""
+        if self.left is None or self.left.is_exact:
+            return ""
+        numbers = [uncertain(number) for number in nuisance.free(problem.points, {})]
+        told = self.left.told_of(self.fitted.simulation, {number.name: number.spread for number in numbers})
+        values = np.array([problem.value(number.name) for number in numbers])
+        sign, usual = np.array([(e.known_sign, e.spread) for e in (BY_NAME[n.name] for n in numbers)]).T
+        u = np.minimum(told.u * [number.spread for number in numbers], usual)
+        strange = (sign * values < ndtri(FALSE_ALARM) * u) | (np.abs(values) > -ndtri(FALSE_ALARM) * usual)
+        return _AS_MODEL_ERROR if np.any(strange) and told.gain < LIKELY_EVIDENCE else ""
 
 
 def reference_temperature(config: Config, points: Points) -> float:
@@ -153,7 +184,11 @@ def at_reference(config: Config, problem: FitProblem) -> FitProblem:
 
 
 def _judged(
-    config: Config, model: NearSolution, demanded: Sequence[Nuisance], candidates: Sequence[Nuisance]
+    config: Config,
+    model: NearSolution,
+    demanded: Sequence[Nuisance],
+    candidates: Sequence[Nuisance],
+    formula: _Formula,
 ) -> tuple[dict[str, Verdict], NearSolution]:
     """The verdicts on demanded influences and candidates, and the fit with the modelled ones; ``model`` has no influences yet."""
     group = parts_of_sweeps(model.problem.points)
@@ -189,9 +224,10 @@ def _judged(
         # A pair is added only if no single influence is significant.
         best = min(gains, key=lambda step: (len(step), -gains[step]))
         refitted = _refitted(model, best)
-        if any(nuisance.of_no_rig(refitted.problem) for nuisance in best):
+        reasons = (formula.refutes(nuisance, refitted.problem) for nuisance in best)
+        if reason := next(filter(None, reasons), ""):
             for nuisance in best:
-                verdicts[nuisance.id] = replace(verdicts[nuisance.id], reason=_OF_NO_RIG)
+                verdicts[nuisance.id] = replace(verdicts[nuisance.id], reason=reason)
             left = [nuisance for nuisance in left if nuisance not in best]
             continue
         rivals_of = {nuisance.rival: nuisance for nuisance in best}

@@ -43,14 +43,9 @@ class Nuisance:
         return tuple(_number(name, run, scatter[name]) for name in self.numbers for run in runs)
 
     def of_no_rig(self, problem: FitProblem) -> bool:
-        """Whether a number is zero or has a sign that is physically impossible.
-
-        Always False for temperature terms: a term of the wrong sign is modelled, and a doubt is reported.
-        """
+        """Whether a number is zero or has a sign that is physically impossible."""
         signs = {name: BY_NAME[name].known_sign for name in self.numbers}
-        return self.key != TEMPERATURE and any(
-            sign and sign * problem.value(name) <= 0.0 for name, sign in signs.items()
-        )
+        return any(sign and sign * problem.value(name) <= 0.0 for name, sign in signs.items())
 
     def setting(self, config: Config) -> bool | None:
         """The demand of [fit]: True or False, or None if the data decide."""

@@ -88,6 +88,15 @@ def test_the_other_side_of_a_disc_shows_an_asymmetry_that_there_is(tmp_path, run
     assert np.mean(np.abs(road.best["Fy"] - true) < 1.96 * road.u["Fy"]) > 0.9
 
 
+def test_a_temperature_that_rises_along_every_sweep_alike_takes_up_no_model_error(tmp_path):
+    """Friction and stiffness of this tyre do not change with it."""
+    project = disc_of_a_brush(tmp_path / "tyre", TYRE)
+    for path in project.parent.glob("*.csv"):
+        table = pd.read_csv(path)
+        table.assign(T_degC=np.linspace(40.0, 49.0, len(table))).to_csv(path, index=False)
+    assert build(project).result.fit.temperature is None
+
+
 def test_the_road_is_known_no_better_than_what_the_coefficients_change_from_the_disc_to_it(built):
     """By the posterior of the fit: its readings on one path hold the forces there, but not each coefficient."""
     at = pd.DataFrame({"alpha_deg": np.linspace(-7.0, 7.0, 15), "gamma_deg": 20.0, "Fz_N": 1700.0})
