@@ -13,7 +13,7 @@ from importlib.resources.abc import Traversable
 
 import mffit
 
-METHOD = 21
+METHOD = 22
 """Number of the method: raised by every change of the program that moves a figure of a result, in that same change.
 
 ``python tests/mffit/method_figures.py --raise`` raises it and stores the new figures. ``tests/mffit/test_method.py`` compares
