@@ -72,7 +72,6 @@ def _with_influences(
     if choice.modelled:
         progress(f"{FITTING_AGAIN} {', '.join(nuisance.name for nuisance in choice.modelled)}")
     full = _polished(config, problem, plan, choice, choice.modelled, fitted, choice.near.problem.simulation)
-
     if not any(nuisance.key == TEMPERATURE for nuisance in choice.modelled):
         return NuisanceFit(full, full, choice, plan, problem, left)
     # Random effects of the runs would absorb the usual warming, which the plain file's coefficients are to contain.

@@ -328,16 +328,17 @@ def test_a_file_that_limits_decide_is_in_doubt(count, doubted):
 @pytest.mark.parametrize(
     ("name", "value", "u", "doubted"),
     [
-        ("k_T_grip_per_K", 0.0032, 0.001, True),
-        ("k_T_grip_per_K", 0.0032, 0.002, False),
-        ("k_T_grip_per_K", -0.013, 0.001, False),
+        ("k_T_stiffness_per_K", 0.0032, 0.001, True),
+        ("k_T_stiffness_per_K", 0.0032, 0.002, False),
+        ("k_T_stiffness_per_K", -0.013, 0.001, False),
+        ("k_T_grip_per_K", 0.0032, 0.001, False),
         ("hysteresis_deg", -0.03, 0.005, True),
         ("hysteresis_deg", 0.03, 0.005, False),
         ("F0_N", -30.0, 1.0, False),
     ],
 )
 def test_a_sign_that_no_other_tyre_has_is_a_doubt(name, value, u, doubted):
-    """Rubber loses grip and stiffness as it warms up, and a force lags behind its angle; a zero may have either sign."""
+    """Rubber softens as it warms up, and a force lags behind its angle; friction may rise, and a zero have either sign."""
     found = judged(noise(), rig={name: (value, u)})
     assert found.trusted
     assert any("has the other sign" in said for said in found.doubts) == doubted
