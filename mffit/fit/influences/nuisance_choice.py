@@ -149,8 +149,8 @@ class _Formula(NamedTuple):
     def refutes(self, nuisance: Nuisance, problem: FitProblem) -> str:
         """Why a significant influence, with its numbers in the ``problem``, is not modelled, in words; empty if it is.
 
-        A sign or a size that no published tyre has asks whether the influence is the model error: the temperature may rise along
-        every sweep alike.
+        A sign that no published tyre has asks whether the influence is the model error: the temperature may rise along every
+        sweep alike.
         """
         if nuisance.key != TEMPERATURE:
             return _OF_NO_RIG if nuisance.of_no_rig(problem) else ""
@@ -161,8 +161,8 @@ class _Formula(NamedTuple):
         values = np.array([problem.value(number.name) for number in numbers])
         sign, usual = np.array([(e.known_sign, e.spread) for e in (BY_NAME[n.name] for n in numbers)]).T
         u = np.minimum(told.u * [number.spread for number in numbers], usual)
-        strange = (sign * values < ndtri(FALSE_ALARM) * u) | (np.abs(values) > -ndtri(FALSE_ALARM) * usual)
-        return _AS_MODEL_ERROR if np.any(strange) and told.gain < LIKELY_EVIDENCE else ""
+        strange = np.any(sign * values < ndtri(FALSE_ALARM) * u)
+        return _AS_MODEL_ERROR if strange and told.gain < LIKELY_EVIDENCE else ""
 
 
 def reference_temperature(config: Config, points: Points) -> float:
