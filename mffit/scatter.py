@@ -24,6 +24,11 @@ ALARM = beyond(FALSE_ALARM)
 """Number of standard deviations that a sound value exceeds with the probability of a false alarm."""
 
 
+def clearly_below_zero(value: float, u: float) -> bool:
+    """Whether a value of standard uncertainty ``u`` is below zero by more than chance explains."""
+    return bool(value < ndtri(FALSE_ALARM) * u)
+
+
 def significant(z: np.ndarray) -> np.ndarray:
     """Mask (n,) of the differences, in standard errors, that are not chance: 1 % of those found may be (Benjamini and Hochberg
     1995).

@@ -67,9 +67,9 @@ class Components:
 def own_columns(force: np.ndarray, along: np.ndarray) -> np.ndarray:
     """Columns (n, q) of each run's random effects: constant, force, and cosines along the swept setting (0 to 1).
 
-    The ``force`` (n,) is that of the formula at the mean of every setting that the run holds, as the model error is. Readings
-    follow a fast wandering of the load less than the formula does: large scales of the runs, cancelled by an opposite model
-    error, would describe this if the wandering were in the columns.
+    The ``force`` (n,) is that of the formula at the run's mean settings, where the model error holds too. A tyre follows a
+    wandering load less than the formula; with the force at the settings as read, large scales and an opposite model error
+    would describe that together.
     """
     order = np.arange(1, constants.FUNCTIONS_OF_A_RUN + 1)
     waves = np.sqrt(2.0) * np.cos(np.pi * order * along[:, None])

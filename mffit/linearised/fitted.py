@@ -83,9 +83,9 @@ class LinearisedFit:
         return Informed.by(information, pull).gain - without.gain
 
     def told_of(self, simulation: Simulation, spread: Mapping[str, float]) -> Informed:
-        """What the readings tell of further numbers beside all else: coefficients, model error and differences of runs.
+        """What the readings tell of further numbers, if coefficients, model error and differences of runs may change too.
 
-        ``spread`` are their prior standard deviations around the values of ``simulation``; they are unity in the result.
+        ``spread`` has, by name, the prior standard deviations around the values in ``simulation``; the result counts in them.
         """
         information, pull = np.zeros((len(spread), len(spread))), np.zeros(len(spread))
         for name, channel in self.channels.items():

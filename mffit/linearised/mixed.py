@@ -116,9 +116,8 @@ class Mixed(ReadOnlyArrays):
         return out
 
     def evidence(self, given: Variances, turn: np.ndarray | None = None) -> MixedEvidence:
-        """The log marginal likelihood for given variances.
-
-        It is that of the model whose common columns are ``common @ turn``, by a lower triangle (m, m).
+        """The log marginal likelihood for given variances; with a lower triangle ``turn`` (m, m), if the common columns are
+        ``common @ turn``.
         """
         sums = self._sums if turn is None else self._sums.turned(turn)
         found = sums.posterior(given)
@@ -231,7 +230,7 @@ class _Sums(NamedTuple):
     readings: int
 
     def turned(self, turn: np.ndarray) -> _Sums:
-        """The sums of the columns ``common @ turn`` by a lower triangle (m, m)."""
+        """The sums if the common columns are ``common @ turn``; ``turn`` (m, m) is a lower triangle."""
         # one product is faster than many small ones
         across = times_lower(self.across.reshape(self.own_pull.size, len(turn)), turn)
         return self._replace(

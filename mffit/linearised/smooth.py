@@ -41,9 +41,10 @@ class _Places(NamedTuple):
     which: list[np.ndarray]  #: (d, n) index of each place's value
 
     @classmethod
-    def of(cls, at: np.ndarray, usual: Sequence[Sequence[float]]) -> _Places:
-        """The places (n, d)."""
+    def of(cls, at: np.ndarray, inputs: Sequence[Input]) -> _Places:
+        """The places (n, d) of conditions on the scales of ``inputs``."""
         each = [np.unique(x, return_inverse=True) for x in at.T]
+        usual = [one.averaged for one in inputs]
         return cls(len(at), usual, [values for values, _ in each], [which for _, which in each])
 
     def correlation(self, others: np.ndarray, lengths: np.ndarray) -> np.ndarray:
@@ -58,7 +59,7 @@ class _Places(NamedTuple):
         return alike
 
     def falls(self, others: np.ndarray, lengths: np.ndarray) -> Iterator[np.ndarray]:
-        """Derivatives (n, m) of its logarithm by the logarithm of each length."""
+        """Derivatives (n, m) of the logarithm of the correlation by that of each length."""
         for values, which, other, length in zip(self.values, self.which, others.T, lengths, strict=True):
             yield _falls(np.abs(values[:, None] - other), length)[which]
 
@@ -88,7 +89,8 @@ class SmoothFunctions(ReadOnlyArrays):
         most = int(constants.FUNCTIONS)
         process = cls.with_all(inputs, settings[:: -(-len(settings) // (4 * most))], lengths, sign)
         places = process.nodes
-        at, load, scaled = process._scaled(places), process._load(places), process._placed(places)
+        scaled, load = process._placed(places), process._load(places)
+        at = _Places.of(scaled, inputs)
         untold, known, chosen = process.variance(places), np.zeros((most, len(places))), list[int]()
         while len(chosen) < min(most, len(places)):
             k, i = len(chosen), int(np.argmax(untold.round(6)))  # rounding must not choose between equal ones
@@ -119,7 +121,7 @@ class SmoothFunctions(ReadOnlyArrays):
     def at_nodes(self, lengths: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
         """Covariance (m, m) of the values at the nodes for other lengths (d,), and its derivatives by the log of each."""
         at = self._placed(self.nodes)
-        places, whole = self._scaled(self.nodes), SINGULAR * np.eye(len(at))
+        places, whole = _Places.of(at, self.inputs), SINGULAR * np.eye(len(at))
         by_lengths = [np.zeros(whole.shape) for _ in lengths]
         for sign, image in self._images(at):
             alike = sign * self._by_load * places.correlation(image, lengths)
@@ -149,12 +151,12 @@ class SmoothFunctions(ReadOnlyArrays):
     def _with_nodes(self, at: np.ndarray) -> Iterator[np.ndarray]:
         """Covariance of the process of unit size between conditions (n, d), as in :meth:`columns`, and the m nodes.
 
-        It comes in blocks (64, m), which stay in the processor's fast memory.
+        It comes in blocks (:data:`BLOCK`, m), which stay in the processor's fast memory.
         """
         nodes, load = self._placed(self.nodes), self._load(self.nodes)
         for begin in range(0, max(len(at), 1), BLOCK):
             block = at[begin : begin + BLOCK]
-            alike = self._correlation(self._scaled(block), nodes)
+            alike = self._correlation(_Places.of(self._placed(block), self.inputs), nodes)
             yield _of_loads(self._load(block)[:, None], load) * alike
 
     def variance(self, at: np.ndarray) -> np.ndarray:
@@ -206,9 +208,6 @@ class SmoothFunctions(ReadOnlyArrays):
         yield 1, at
         if any(one.mirrored for one in self.inputs):
             yield self.sign, np.where([one.mirrored for one in self.inputs], -at, at)
-
-    def _scaled(self, at: np.ndarray) -> _Places:
-        return _Places.of(self._placed(at), [one.averaged for one in self.inputs])
 
     def _placed(self, at: np.ndarray) -> np.ndarray:
         """Places (..., d) of conditions on the scales along which the lengths are the same everywhere."""

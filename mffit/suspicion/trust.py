@@ -17,7 +17,7 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import chdtr, chdtrc, fdtrc, ndtr, ndtri
+from scipy.special import chdtr, chdtrc, fdtrc, ndtr
 
 from mffit.as_json import keys
 from mffit.constants import (
@@ -38,7 +38,7 @@ from mffit.quantities import CHANNELS, column
 from mffit.rig import Readings
 from mffit.rig_errors import error_of, shown, words_of
 from mffit.rounding import rounded
-from mffit.scatter import EFFICIENCY, finite_median, rms
+from mffit.scatter import EFFICIENCY, clearly_below_zero, finite_median, rms
 from mffit.suspicion import constants
 from mffit.suspicion.others import Doubt
 from mffit.suspicion.rule import Facts, Outcome, Rule, When, rule
@@ -452,7 +452,7 @@ def sign_of_no_other(fit: FinishedFit) -> Iterator[Facts]:
     """Sign of a stiffness over temperature or of a hysteresis, beyond what chance explains."""
     for name, (number, spread) in fit.rig.items():
         error = error_of(name)
-        if error is not None and error.known_sign * number < ndtri(FALSE_ALARM) * spread:
+        if error is not None and clearly_below_zero(error.known_sign * number, spread):
             *found, unit = shown(name, number, spread)
             value, u = rounded(*found)
             yield {"what": words_of(name), "value": value, "u": u, "unit": unit}

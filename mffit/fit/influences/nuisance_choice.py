@@ -7,11 +7,10 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import ndtri
 
 from mffit.as_json import keys
 from mffit.config import Config
-from mffit.constants import FALSE_ALARM, FEWEST_SWEEPS_TO_PREDICT, MOST
+from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, MOST
 from mffit.errors import InputError
 from mffit.fit.fitted import Fitted, uncertain
 from mffit.fit.influences.joint import JointFit, LeftOutGroups, beyond_chance
@@ -24,6 +23,7 @@ from mffit.linearised.components import LIKELY_EVIDENCE
 from mffit.linearised.inputs import word_of
 from mffit.points import Points, levels
 from mffit.rig_errors import BY_NAME, P_REF, T_REF, V_REF
+from mffit.scatter import clearly_below_zero
 from mffit.suspicion import parts_of_sweeps
 
 Gaps = Mapping[str, float]
@@ -127,12 +127,12 @@ def choose(config: Config, first: Fitted, left: LinearisedFit | None = None) -> 
         else:
             open_.append(nuisance)
     of_runs = [nuisance for nuisance in (*demanded, *open_) if nuisance.per_run]
-    common = [[n for n in some if not n.per_run] for some in (demanded, open_)]
+    given, candidates = ([n for n in some if not n.per_run] for some in (demanded, open_))
     scatter = dict[str, float]()
     numbers = [number for number in first.numbers if number.name not in first.at_bound]
     model = NearSolution(first.problem, numbers, ())
-    if any(common) or of_runs:
-        judged, model = _judged(config, model, common[0], common[1], _Formula(first, left))
+    if given or candidates or of_runs:
+        judged, model = _judged(config, model, given, candidates, _Formula(first, left))
         for nuisance in of_runs:
             verdict, scatter = _of_runs(config, model, nuisance, demanded=nuisance in demanded)
             judged[nuisance.id] = verdict
@@ -156,12 +156,13 @@ class _Formula(NamedTuple):
             return _OF_NO_RIG if nuisance.of_no_rig(problem) else ""
         if self.left is None or self.left.is_exact:
             return ""
-        numbers = [uncertain(number) for number in nuisance.free(problem.points, {})]
-        told = self.left.told_of(self.fitted.simulation, {number.name: number.spread for number in numbers})
-        values = np.array([problem.value(number.name) for number in numbers])
-        sign, usual = np.array([(e.known_sign, e.spread) for e in (BY_NAME[n.name] for n in numbers)]).T
-        u = np.minimum(told.u * [number.spread for number in numbers], usual)
-        strange = np.any(sign * values < ndtri(FALSE_ALARM) * u)
+        spread = {n.name: n.spread for n in map(uncertain, nuisance.free(problem.points, {}))}
+        told = self.left.told_of(self.fitted.simulation, spread)
+        u = told.u * [*spread.values()]
+        strange = any(
+            clearly_below_zero(BY_NAME[name].known_sign * problem.value(name), min(own, BY_NAME[name].spread))
+            for name, own in zip(spread, u.tolist(), strict=True)
+        )
         return _AS_MODEL_ERROR if strange and told.gain < LIKELY_EVIDENCE else ""
 
 
