@@ -113,11 +113,14 @@ def words_of(document: bytes) -> str:
 
 
 def words_of_sheets(document: bytes) -> list[str]:
-    """The text of every sheet of a PDF that Chromium wrote, without its spaces: glyphs by the table of Unicode of each font."""
+    """The text of every sheet of a PDF that Chromium wrote, without its spaces: glyphs by the table of Unicode of each font.
+
+    Chromium ends its lines with a line feed: a carriage return before it is the last byte of what was compressed.
+    """
     objects = {
         int(number): (head, zlib.decompress(content) if b"/FlateDecode" in head else content)
         for number, head, content in re.findall(
-            rb"(\d+) 0 obj\s*(.*?)(?:\s*stream\r?\n(.*?)\r?\nendstream)?\s*endobj", document, re.DOTALL
+            rb"(\d+) 0 obj\s*(.*?)(?:\s*stream\n(.*?)\nendstream)?\s*endobj", document, re.DOTALL
         )
     }
     tables = {
