@@ -19,7 +19,7 @@ from mffit.diagnosis.needs import possible, without
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import (
     DiagnosisNote,
-    LeftByBuild,
+    LeftByFormula,
     MoreThanBuild,
     NoRepair,
     NotVisible,
@@ -95,7 +95,9 @@ def _notes(
     found = confirmed.found
     playing = int(np.sum(done.explanation.refined.state.floats(done.explanation.problem.points)))
     more = {} if confirmed.rest else beyond_build(found, search)
-    left = LeftByBuild(search.asked.left) if found.smooth.expected and not confirmed.rest else None
+    by_build = bool(search.asked.left)
+    misses = not confirmed.rest and (found.smooth.expected if by_build else found.smooth.found)
+    left = LeftByFormula(search.asked.left or search.by_coefficients, not by_build) if misses else None
     remarks = (
         *(TakenOff(sentence) for sentence in search.asked.taken_off),
         WithoutModelError(search.asked.missed) if search.asked.missed else None,

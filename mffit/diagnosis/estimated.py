@@ -32,12 +32,45 @@ from mffit.rig_errors import error_of
 from mffit.scatter import rms
 
 
+def told(found: Explanation, search: Search) -> Explanation:
+    """The explanation with its numbers :func:`estimated`, without effects that what the formula misses imitates.
+
+    Beside structure, evidence alone does not tell an effect from it: the estimate must also differ from the given value by more
+    than two of its standard errors. Calibrations, which look like the tyre, count as exact there, as they do for the evidence.
+    """
+    done = estimated(found, search)
+    unknown = done.smooth.is_strange or done.bump.found  # which lowers every confidence
+    if unknown or not any(done.problem.amplitude.values()) or not done.chosen.effects:
+        return done
+    beside = _beside(done, search)
+    exact = beside.given({n for n in beside.names if (e := error_of(n)) is not None and e.is_gain})
+    u = _standard_errors(done, done.plain, done.refined, exact, done.freed.names)
+    points, start, numbers = done.problem.points, search.start, done.refined.numbers
+    away = {
+        effect: max(
+            (abs(numbers[n] - start.number(n, points)) / u[n] for n in effect.parameters if u.get(n)),
+            default=math.inf,
+        )
+        for effect in done.chosen.effects
+    }
+    least = min(away, key=away.__getitem__)
+    if away[least] > TWO_SIGMA:
+        return done
+    others = tuple(effect for effect in found.candidates if effect is not least)
+    return told(replace(found.only(found.chosen.others(least)), candidates=others), search)
+
+
+def _beside(found: Explanation, search: Search) -> Numbers:
+    """The prior of all that may move in addition to the numbers of the effects."""
+    return search.beside.without({n for effect in found.chosen.effects for n in effect.parameters})
+
+
 def estimated(found: Explanation, search: Search) -> Explanation:
     """The explanation with the numbers of its effects estimated together with coefficients and rig errors that may move."""
     noise, points = found.independent, found.problem.points
     left = noise.measured(points) - found.refined.state.predict(points, noise.channels)
     plain = DiagnosisProblem(points, search.start, noise.at_least(left), found.problem.declared)
-    beside = search.beside.without({n for e in found.chosen.effects for n in e.parameters})
+    beside = _beside(found, search)
     freed = _freed(found, beside, search.inexact.names)
     refined, coefficients = plain.refine(found.chosen, freed)
     u = {**refined.stderr, **_standard_errors(found, plain, refined, beside, freed.names)}

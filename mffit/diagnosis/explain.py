@@ -10,7 +10,7 @@ import numpy as np
 from mffit import progress as steps
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import bump_scan
-from mffit.diagnosis.estimated import estimated
+from mffit.diagnosis.estimated import told
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.imitation import imitations
@@ -35,10 +35,10 @@ def explain(search: Search) -> Explanation:
         found = _selected_around(search, found.refined.state, noise, found.chosen)
     if search.inexact.names:  # coefficients act otherwise where only the named effects act with them
         found = _selected_around(search, found.refined.state, noise, found.chosen)
-    if found.chosen.effects and (found.bump.found or found.smooth.found):
+    if found.chosen.effects and (found.bump.found or found.smooth.is_strange):
         found = replace(found, imitated=imitations(found.problem, search.candidates))
     search.progress(steps.SIZING)
-    return estimated(found, search)
+    return told(found, search)
 
 
 def _all_at_once(search: Search) -> tuple[Simulation, Noise]:

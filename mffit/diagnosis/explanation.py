@@ -121,7 +121,7 @@ class Explanation(ReadOnlyArrays):
         other effects imitate each effect of the library if that one is removed?
         """
         k = self.chosen.effects.index(effect)
-        outside, share = self.bump.found or self.smooth.found, self.places[k].share
+        outside, share = self.bump.found or self.smooth.is_strange, self.places[k].share
         return (is_no_imitation(share, self.imitated) if outside else share) * self.certainty[k]
 
     def _place(self, effect: Effect, left: float) -> WeighedPlace:
@@ -132,7 +132,7 @@ class Explanation(ReadOnlyArrays):
         against = gain + left - self.left(without) - math.log(max(len(self.candidates), 1))
         if effect.id in self.problem.noise.offsets:  # autocorrelated errors are another rival
             against = min(against, self.problem.noise.offsets[effect.id].beyond)
-        open_ = left + (self.smooth.gain if self.smooth.found else 0.0)
+        open_ = left + (self.smooth.unexcused if self.smooth.is_strange else 0.0)
         explains = max(gain, chosen.alone - without.alone, 0.0)
         share = explains / (explains + open_) if open_ else 1.0
         return WeighedPlace(without, float(np.clip(against, -500.0, 500.0)), share)

@@ -215,17 +215,21 @@ def _sizes(of: Mapping[str, float]) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class LeftByBuild:
-    """What remains may be what the formula cannot follow, because the build of the model left as much of its own readings."""
+class LeftByFormula:
+    """What remains may be what the formula cannot follow: the build of the model left as much, or it is declared that inexact."""
 
-    left: Mapping[str, float]  #: by channel, rms beyond noise and known model error [N], [Nm]
+    left: Mapping[str, float]
+    """By channel, rms [N], [Nm] beyond noise and known model error of the build, or by which inexact coefficients act."""
+    declared: bool  #: whether it follows from ``model.u_coefficients``
 
     @property
     def sentence(self) -> str:
-        return (
-            "What remains is taken for what the formula cannot follow: of its own readings the build of the model left "
-            f"{_sizes(self.left)} rms beyond what it explained, and up to twice as much needs no cause."
+        why = (
+            f"coefficients as inexact as [model] u_coefficients says change the readings by {_sizes(self.left)} rms"
+            if self.declared
+            else f"of its own readings the build of the model left {_sizes(self.left)} rms beyond what it explained"
         )
+        return f"What remains is taken for what the formula cannot follow: {why}, and up to twice as much needs no cause."
 
 
 @dataclass(frozen=True, slots=True)

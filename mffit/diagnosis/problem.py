@@ -35,7 +35,8 @@ class DiagnosisProblem:
 
     ``declared`` has the value and standard uncertainty of each declared rig error. ``offset`` (c n,) is added to the readings if
     ``start`` is not at the mean of the coefficients' prior. ``beside`` (c n, k) is the basis of smooth structure that the
-    evidence of every hypothesis allows for, and ``allowed`` its amplitude by channel that needs no cause.
+    evidence of every hypothesis allows for, ``allowed`` its amplitude by channel that is expected of the model, and ``excused``
+    that which needs no cause if it is found.
     """
 
     def __init__(
@@ -47,10 +48,11 @@ class DiagnosisProblem:
         offset: np.ndarray | None = None,
         beside: np.ndarray | None = None,
         allowed: Mapping[str, float] | None = None,
+        excused: Mapping[str, float] | None = None,
     ) -> None:
         self.points, self.start, self.noise = points, start, noise
         basis = np.zeros((len(noise.u), 0)) if beside is None else beside
-        self.structure = SmoothStructure(noise, basis, allowed or {})
+        self.structure = SmoothStructure(noise, basis, allowed or {}, excused or {})
         self.amplitude: Mapping[str, float] = {}  # of the structure in the covariance, by channel
         self.declared, self.offset = declared or {}, offset
         self.measured = noise.measured(points)

@@ -84,9 +84,9 @@ def hardly_this_tyre(found: Explanation) -> tuple[Rest, ...]:
 
 def _structure(found: Explanation) -> Iterator[Rest]:
     """Smooth and local structure, each with the price of its search."""
-    amplitude = {name: size for name, size in found.smooth.amplitude.items() if size}
-    most = max(amplitude, key=amplitude.__getitem__, default="")
-    yield Rest(RestKind.SMOOTH, most, found.smooth.gain)
+    if found.smooth.is_strange:
+        most = max(found.smooth.strange, key=found.smooth.amplitude.__getitem__)
+        yield Rest(RestKind.SMOOTH, most, found.smooth.unexcused)
     yield Rest(RestKind.LOCAL, found.bump.channel, found.bump.gain)
 
 

@@ -138,8 +138,8 @@ class Diagnosis(ReadOnlyArrays, Brief):
         Apart, ...
     ] = ()  #: given and corrected property file, at conditions measured and not measured
     with_terms: Tyre | None = None
-    """The given property file with coefficients estimated together with errors of rig and environment, if no effect of the
-    tyre was accepted."""
+    """The given property file with coefficients estimated anew, with errors of rig and environment if such were found, if no
+    effect of the tyre was accepted."""
     given_file: str = (
         "the given file"  #: name of the given property file, from the output folder; set by the command
     )

@@ -112,13 +112,32 @@ class Search:
             off, size = (rms((change / noise.u)[noise.used]) for change in (moved - truly, truly))
             if off > size:  # no change at all would be nearer
                 state, at, moved = self.start, self.start, None
-        return DiagnosisProblem(
-            self.points, at, self.shared(noise, state), self.declared, moved, self.structure, self.allowed
-        )
+        noise, limits = self.shared(noise, state), (self.allowed, self.excused)
+        return DiagnosisProblem(self.points, at, noise, self.declared, moved, self.structure, *limits)
 
     @cached_property
     def allowed(self) -> dict[str, float]:
         """By channel, the amplitude up to which structure may be the model error of the build: two standard deviations of it."""
-        stated = self.asked.left
-        sizes = {name: rms(self.points.channel(name)) for name in self.channels if name in stated}
-        return {name: TWO_SIGMA * stated[name] / size for name, size in sizes.items() if size > 0.0}
+        return self._amplitudes(self.asked.left)
+
+    @cached_property
+    def by_coefficients(self) -> dict[str, float]:
+        """By channel, the rms [N], [Nm] by which coefficients of declared inexactness change the readings; empty without any."""
+        if self.asked.coefficients is not None or self.asked.left or not self.config.model.u_coefficients:
+            return {}
+        columns = columns_of(self.inexact, self.start, self.points, self.channels)
+        spread = np.sqrt(np.sum(columns**2, axis=1)).reshape(len(self.channels), -1)
+        return {name: rms(rows) for name, rows in zip(self.channels, spread, strict=True)}
+
+    @cached_property
+    def excused(self) -> dict[str, float]:
+        """By channel, the amplitude of structure that a declared inexactness of the coefficients would explain.
+
+        A formula whose coefficients are that inexact may miss the tyre by as much: such structure is found, but needs no cause.
+        """
+        return self._amplitudes(self.by_coefficients)
+
+    def _amplitudes(self, sizes: Mapping[str, float]) -> dict[str, float]:
+        """Two standard deviations of sizes by channel [N], [Nm], over the rms of the readings."""
+        readings = {name: rms(self.points.channel(name)) for name in self.channels if name in sizes}
+        return {name: TWO_SIGMA * sizes[name] / size for name, size in readings.items() if size > 0.0}

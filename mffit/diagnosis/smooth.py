@@ -35,10 +35,17 @@ class Smooth:
     gain: float  #: gain of log evidence over the expected part
     expected: Mapping[str, float] = field(default_factory=dict)
     """By channel, the amplitude of the part that the model error of the given file explains; empty without any."""
+    strange: tuple[str, ...] = ()  #: channels with more structure than needs no cause
+    unexcused: float = 0.0  #: gain of log evidence over structure that needs no cause
 
     @property
     def found(self) -> bool:
         return self.gain > constants.STRUCTURE_EVIDENCE
+
+    @property
+    def is_strange(self) -> bool:
+        """Whether it needs a cause."""
+        return self.found and self.unexcused > constants.STRUCTURE_EVIDENCE
 
 
 NO_SMOOTH = Smooth({}, 0.0)
@@ -87,6 +94,13 @@ class SmoothStructure(ReadOnlyArrays):
     basis: np.ndarray  #: (c n, k) changes of the readings at amplitude 1, equally many for every channel
     allowed: Mapping[str, float] = field(default_factory=dict)
     """By channel, the largest amplitude that the model error of the given file explains; empty if that is unknown."""
+    excused: Mapping[str, float] = field(default_factory=dict)
+    """By channel, the amplitude up to which structure that is found needs no cause, because the model is declared inexact."""
+
+    def most_excused(self, channel: str) -> float:
+        """The largest of the amplitudes that are tried which needs no cause in a channel."""
+        limit = self.excused.get(channel, 0.0)
+        return float(np.max(AMPLITUDES, initial=0.0, where=limit >= AMPLITUDES))
 
     @cached_property
     def directions(self) -> dict[str, tuple[slice, Directions]]:
@@ -164,7 +178,12 @@ class BesideColumns(NamedTuple):
         expected, _ = self._climbed(dict.fromkeys(channels, 0.0), self.structure.allowed, 0.0)
         paid = len(channels) * math.log(len(AMPLITUDES))
         size, gain = self._climbed(expected, dict.fromkeys(channels, LARGEST), paid)
-        return Smooth(size, gain, {name: one for name, one in expected.items() if one})
+        known = {name: max(expected[name], self.structure.most_excused(name)) for name in channels}
+        limits = {name: max(known[name], self.structure.allowed.get(name, 0.0)) for name in channels}
+        strange = tuple(name for name in channels if size[name] > limits[name])
+        less = {**size, **{name: known[name] for name in strange}}
+        unexcused = self.evidence(size) - self.evidence(less) - paid if strange else 0.0
+        return Smooth(size, gain, {n: one for n, one in expected.items() if one}, strange, unexcused)
 
     def _climbed(
         self, size: dict[str, float], largest: Mapping[str, float], paid: float

@@ -158,7 +158,8 @@ def advice(diagnosis: Diagnosis) -> list[str]:
         found.append(f"Add {beside} as a term in addition to the file, or keep it constant.")
     if diagnosis.model_with_terms:
         found.append(
-            f"{diagnosis.model_with_terms} is the given file with its coefficients estimated anew in addition to these."
+            f"{diagnosis.model_with_terms} is the given file with its coefficients estimated anew"
+            f"{' in addition to these' if diagnosis.repaired else ''}."
         )
     tied = [one.separation for one in diagnosis.effects if one.separation is not None]
     runs = dict.fromkeys(separation(one) for one in tied if one.worthwhile)

@@ -28,7 +28,7 @@ from mffit.pipeline.building import build
 from mffit.pipeline.inputs import input_hashes, inputs_of, project_of, read_base, read_points
 from mffit.pipeline.left_out import left_out_by_diagnosis
 from mffit.pipeline.measuring import epsilon_gamma, without_play
-from mffit.pipeline.provenance import fitted_to, known_of_model, marked, rig_of_build, use_of
+from mffit.pipeline.provenance import fitted_to, known_of_model, marked, rig_of_build, use_of, was_edited
 from mffit.points import Points
 from mffit.points.loading import Reading
 from mffit.prediction.stored import load
@@ -134,6 +134,8 @@ def without_model_error(points: Points, chosen: ChosenModel, known: Asked) -> tu
         return points, known
     names = [name for name, own in predictor.channels.items() if own.is_proven and name in known.left]
     model, given = (Simulation.of(tyre, turn_slip=predictor.curved) for tyre in (fitted, chosen.tyre))
+    if was_edited(chosen.tyre, chosen.file):  # its edits are to be found
+        given = model
     beyond, plain = (one.readings(points, names) for one in (model, given))
     moved = {name: beyond[name] - plain[name] for name in names}
     missed = {name: math.hypot(predictor.channels[name].size, rms(moved[name])) for name in names}

@@ -138,7 +138,7 @@ def terms_beside(tyre: Tyre) -> dict[str, float]:
 
 def fitted_to(tyre: Tyre, config: Config) -> bool:
     """Whether a build fitted the file to the present sweeps."""
-    of_file = {name: digest for name, digest in tyre.provenance.items() if name.startswith("input ")}
+    of_file = _inputs_stated(tyre)
     return bool(of_file) and of_file == _of_inputs(input_hashes(config))
 
 
@@ -147,10 +147,11 @@ def known_of_model(tyre: Tyre, config: Config, path: Path | None, *, same: bool,
 
     Coefficients fitted to the present sweeps (``same``, see :func:`fitted_to`, or ``fresh``: just now) are fitted again; those
     of a build on other sweeps have that build's posterior. ``model.u_coefficients`` takes precedence over a posterior. A file
-    counts as built only if result.json next to it has the same values, because it may have been edited since.
+    that was edited since, so that the result.json next to it has other values, has no posterior; the tyre misses the formula of
+    its build all the same.
     """
-    result = {} if path is None else _result_of(tyre, path)
-    posterior = _posterior(result)
+    result = {} if path is None else _result_of_build(tyre, path)
+    posterior = None if path is None else _posterior(_result_of(tyre, path))
     if same and (fresh or posterior is not None):
         known = {name: entry.u for name, entry in config.coefficients.items() if entry.u is not None}
         return Asked(coefficients=refitted(tyre, curved=config.rig.on_disc, stated=known), seen=True)
@@ -167,15 +168,43 @@ def missed_by_file(tyre: Tyre, path: Path) -> dict[str, float]:
     return _left(_result_of(tyre, path))
 
 
+def was_edited(tyre: Tyre, path: Path) -> bool:
+    """Whether a file of the build whose result.json is next to it has other values."""
+    return bool(_result_of_build(tyre, path)) and not _result_of(tyre, path)
+
+
 def _result_of(tyre: Tyre, path: Path) -> dict[str, Any]:
     """The result of the build that wrote a file; empty if no build did or the file was edited."""
+    result = _result_beside(path)
     try:
-        result: dict[str, Any] = json.loads((path.parent / BUILT).read_text(encoding="utf-8"))
         values = {name: float(row["value"]) for name, row in result["fit"]["coefficients"].items()}
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+    except (ValueError, KeyError, TypeError, AttributeError):
         return {}
     same = all(np.isclose(float(tyre[n]), v, rtol=1e-6, atol=1e-12) for n, v in values.items())
     return result if same else {}
+
+
+def _result_of_build(tyre: Tyre, path: Path) -> dict[str, Any]:
+    """The same, also if the file was edited: its comments name the inputs of the build."""
+    result = _result_beside(path)
+    try:
+        of_it = _of_inputs(result["made"]["inputs"]) == _inputs_stated(tyre)
+    except (KeyError, TypeError, AttributeError):
+        of_it = False
+    return result if of_it else _result_of(tyre, path)
+
+
+def _result_beside(path: Path) -> dict[str, Any]:
+    """The result.json next to a file; empty if it cannot be read."""
+    try:
+        return dict(json.loads((path.parent / BUILT).read_text(encoding="utf-8")))
+    except (OSError, ValueError, TypeError):
+        return {}
+
+
+def _inputs_stated(tyre: Tyre) -> dict[str, str]:
+    """Digests of the inputs in the comments of a file."""
+    return {name: digest for name, digest in tyre.provenance.items() if name.startswith("input ")}
 
 
 def _posterior(result: Mapping[str, Any]) -> Numbers | None:

@@ -180,6 +180,8 @@ def _shrink(case: Case, diagnosis: Diagnosis) -> float:
         **{**vars(between), "alpha_deg": between.alpha_deg + offset, "gamma_deg": between.gamma_deg * 0.9}
     )
     points = diagnosis.points.select(np.flatnonzero(np.abs(np.degrees(diagnosis.points.alpha)) < 7.999))
+    if len(points) != len(between.alpha_deg):  # a sweep was left out
+        return np.nan
     points = points.replace(alpha=np.radians(between.alpha_deg), gamma=np.radians(between.gamma_deg))
     truth = case.noise_free(between)
     before = Simulation.of(case.given, turn_slip=case.turn_slip).readings(points)
@@ -214,6 +216,6 @@ def rates(verdicts: list[Verdict]) -> dict[str, tuple[float, float]]:
             len(unknown),
         ),
         "unknown: not forced onto an effect": (sum(not v.named for v in unknown), len(unknown)),
-        "median gap shrinkage": (float(np.median([v.shrink for v in caused] or [np.nan])), 0),
+        "median gap shrinkage": (float(np.nanmedian([v.shrink for v in caused] or [np.nan])), 0),
         "median seconds": (float(np.median([v.seconds for v in verdicts] or [np.nan])), 0),
     }

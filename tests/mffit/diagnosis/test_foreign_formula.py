@@ -5,7 +5,9 @@ The brush of ``brush.py`` and the tyre of four lines of ``disc_project.py`` are 
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import brush
@@ -18,7 +20,7 @@ from disc_project import disc_project
 import mffit
 import tir
 from mffit.diagnosis import Diagnosis
-from mffit.diagnosis.notes import WithoutModelError
+from mffit.diagnosis.notes import LeftByFormula, WithoutModelError
 from mffit.diagnosis.odd_level import OddLevel
 from mffit.diagnosis.rest import Answer
 from tir import Tyre
@@ -63,6 +65,11 @@ def built_brush(tmp_path_factory) -> Path:
 def fitted_brush(built_brush) -> Tyre:
     """That file alone."""
     return tir.read(built_brush)
+
+
+def softer(tyre: Tyre) -> Tyre:
+    """The file with 0.6 of its camber stiffness."""
+    return tyre.replace(PKY6=0.6 * tyre["PKY6"], PKY7=0.6 * tyre["PKY7"])
 
 
 def assert_named(found: Diagnosis, *effects: str) -> None:
@@ -120,6 +127,11 @@ def test_what_a_build_left_is_not_missing_beside_its_temperature_terms(tmp_path)
     assert {one.effect.id for one in found.effects} == {"temperature"}
     assert not found.unexplained
     assert [note for note in found.notes if isinstance(note, WithoutModelError)]
+    right = tir.read(tmp_path / "out" / "brush.tir")
+    softer(right).write(tmp_path / "out" / "brush.tir")
+    found = mffit.diagnose(other, tmp_path / "out" / "brush.tir")
+    assert {one.effect.id for one in found.repaired} == {"temperature", "camber-stiffness"}
+    assert found.tyre["PKY6"] == pytest.approx(right["PKY6"], rel=0.1)
 
 
 def test_zeros_of_the_rig_are_no_gap_beside_what_the_build_left(built_toy, tmp_path):
@@ -229,6 +241,57 @@ def test_a_tyre_with_less_grip_is_another_than_that_of_the_build(built_brush, tm
 
 def test_the_miss_of_the_formula_alone_is_no_effect(fitted_brush, tmp_path):
     assert_named(mffit.diagnose(brush.written(Brush(), tmp_path, 81), fitted_brush))
+
+
+def inexact(project: Path) -> Path:
+    """The project with coefficients of the model declared 3 % uncertain."""
+    project.write_text(
+        f"{project.read_text(encoding='utf-8')}\n[model]\nu_coefficients = 0.03\n", encoding="utf-8"
+    )
+    return project
+
+
+def assert_repaired(found: Diagnosis, right: Tyre) -> None:
+    """Camber stiffness alone, by its number, in a file that is to be trusted."""
+    assert [one.effect.id for one in found.repaired] == ["camber-stiffness"]
+    assert found.answer is Answer.FOUND
+    assert found.trusted
+    value, u = found.effects[0].parameters["PKY6"]
+    assert abs(value - right["PKY6"]) < min(3.0 * u, 0.1 * abs(right["PKY6"]))
+    assert found.tyre["PKY6"] == value
+    assert [note for note in found.notes if isinstance(note, LeftByFormula)]
+
+
+def test_the_edit_of_a_file_is_found_beside_what_its_build_left(built_brush, fitted_brush, tmp_path):
+    """The result.json next to it has other values; the tyre misses the formula all the same."""
+    shutil.copytree(built_brush.parent, edited := tmp_path / "out")
+    softer(fitted_brush).write(edited / "brush.tir")
+    found = mffit.diagnose(brush.written(Brush(), tmp_path, 81), edited / "brush.tir")
+    assert_repaired(found, fitted_brush)
+    assert [note for note in found.notes if isinstance(note, WithoutModelError)]
+
+
+def test_the_result_of_another_build_says_nothing_of_a_file(built_brush, fitted_brush, tmp_path):
+    shutil.copytree(built_brush.parent, edited := tmp_path / "out")
+    other = replace(softer(fitted_brush), provenance={"input points.csv": "0" * 16})
+    other.write(edited / "brush.tir")
+    found = mffit.diagnose(brush.written(Brush(), tmp_path, 81), edited / "brush.tir")
+    assert found.unexplained
+    assert not [note for note in found.notes if isinstance(note, WithoutModelError)]
+
+
+@pytest.mark.parametrize("seed", [51, 81])
+def test_an_effect_is_found_in_a_file_that_is_declared_inexact(fitted_brush, tmp_path, seed):
+    """What the formula misses, 11 N, is less than what such coefficients move."""
+    found = mffit.diagnose(inexact(brush.written(Brush(), tmp_path, seed)), softer(fitted_brush))
+    assert_repaired(found, fitted_brush)
+
+
+def test_the_miss_of_the_formula_is_not_missing_in_a_file_that_is_declared_inexact(fitted_brush, tmp_path):
+    found = mffit.diagnose(inexact(brush.written(Brush(), tmp_path, 81)), fitted_brush)
+    assert not found.effects
+    assert not found.unexplained
+    assert found.trusted
 
 
 def test_beside_the_miss_of_the_formula_the_points_of_its_own_fit_name_no_effect(built_brush):
