@@ -36,15 +36,17 @@ def told(found: Explanation, search: Search) -> Explanation:
     """The explanation with its numbers :func:`estimated`, without effects that what the formula misses imitates.
 
     Beside structure, evidence alone does not tell an effect from it: the estimate must also differ from the given value by more
-    than two of its standard errors. Calibrations, which look like the tyre, count as exact there, as they do for the evidence.
+    than two of its standard errors. Calibrations, which look like the tyre, count as exact there, as they do for the evidence,
+    and so do coefficients that a build fitted to this tyre.
     """
     done = estimated(found, search)
     unknown = done.smooth.is_strange or done.bump.found  # which lowers every confidence
     if unknown or not any(done.problem.amplitude.values()) or not done.chosen.effects:
         return done
     beside = _beside(done, search)
-    exact = beside.given({n for n in beside.names if (e := error_of(n)) is not None and e.is_gain})
-    u = _standard_errors(done, done.plain, done.refined, exact, done.freed.names)
+    fitted = search.inexact.names if search.asked.coefficients is not None else ()
+    exact = {n for n in beside.names if n in fitted or ((e := error_of(n)) is not None and e.is_gain)}
+    u = _standard_errors(done, done.plain, done.refined, beside.given(exact), done.freed.names)
     points, start, numbers = done.problem.points, search.start, done.refined.numbers
     away = {
         effect: max(
