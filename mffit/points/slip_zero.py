@@ -35,6 +35,8 @@ WEAKEST = constants.SOFTEST_SLIP_STIFFNESS * constants.SMALLEST_SWEEP_OF_SLIP
 """|Fx| over load that every driven tyre exceeds."""
 STIFFEST = BY_NAME["PKX1"].bounds[1]
 """Slope of Fx over load and slip beyond which a channel moves too little to be the slip."""
+ROUNDING = 1e-12
+"""Change of slip over Fx and load that the estimate makes of readings at one slip."""
 FROM_SPEEDS = "slip from wheel and road speed"
 """Replaces the heading if a rig records no slip."""
 
@@ -163,6 +165,8 @@ def slip_zero(of: Driven) -> SlipZero | None:
         if not np.any(driven):
             return None
         inverse = float(np.median((of.kappa - _conditions(of, middle) @ found)[driven] / force[driven]))
+    elif abs(inverse) < ROUNDING:
+        return None  # the force passes zero at one slip
     if inverse * float(np.mean(of.kappa[every] * force[every])) < 0.0:
         return None  # the line through few points near zero contradicts the whole curve
     zero = SlipZero(1.0 / inverse if inverse else np.nan, _at_loads(used, middle, found), middle, found)
