@@ -82,8 +82,8 @@ def answer(
     )
     odd = [one.place for one in notes if isinstance(one, OddLevel) and one.region]
     delivers = any(effect.kind == "tyre" and effect.in_file for effect in done.chosen.effects)
-    again = any(name in BY_NAME for name in done.coefficients)
-    again = again and bool(done.chosen.effects or not search.asked.seen)
+    moved = any(name in BY_NAME for name in done.coefficients)
+    again = moved and (bool(done.chosen.effects) or not search.asked.seen)
     corrected = _corrected(search.tyre, done, u)
     diagnosis = Diagnosis(
         headline="",

@@ -17,7 +17,7 @@ import numpy as np
 from mffit.constants import TWO_SIGMA
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
-from mffit.diagnosis.inexact import EXACT, columns_of, known_around, slopes_of
+from mffit.diagnosis.inexact import EXACT, known_around, slopes_of, spread_of
 from mffit.diagnosis.odd_level import OddLevel, odd_level
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.search import Search
@@ -174,7 +174,7 @@ def _strained(plain: DiagnosisProblem, chosen: Hypothesis, search: Search) -> bo
     if not left or not search.inexact.names:
         return False
     given, free = (plain.refine(chosen, one)[0].state for one in (EXACT, search.inexact))
-    spread = np.sqrt(np.sum(columns_of(search.inexact, given, plain.points, plain.channels) ** 2, axis=1))
+    spread = spread_of(search.inexact, given, plain.points, plain.channels)
     moved, u = (plain.noise.by_channel(x) for x in (plain.predict(free) - plain.predict(given), spread))
     return any(rms(moved[n]) > TWO_SIGMA * math.hypot(left[n], rms(u[n])) for n in left if n in moved)
 

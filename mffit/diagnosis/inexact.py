@@ -30,6 +30,11 @@ def columns_of(
     return slopes_of(state, points, numbers.names, channels) @ numbers.root
 
 
+def spread_of(numbers: Numbers, state: Simulation, points: Points, channels: Sequence[str]) -> np.ndarray:
+    """Standard deviation (c n,) of the readings at a simulation by the prior of these numbers."""
+    return np.asarray(np.sqrt(np.sum(columns_of(numbers, state, points, channels) ** 2, axis=1)))
+
+
 def known_around(values: Mapping[str, float], u: Iterable[float]) -> Numbers:
     """Independent numbers with their values as prior means, and their standard uncertainties."""
     at = np.array([*values.values()], dtype=float)

@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.config import Config
 from mffit.constants import TWO_SIGMA
-from mffit.diagnosis.inexact import columns_of, slopes_of, with_rig
+from mffit.diagnosis.inexact import columns_of, slopes_of, spread_of, with_rig
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import NotVisible, OneSweep
 from mffit.diagnosis.problem import DiagnosisProblem
@@ -125,9 +125,8 @@ class Search:
         """By channel, the rms [N], [Nm] by which coefficients of declared inexactness change the readings; empty without any."""
         if self.asked.coefficients is not None or self.asked.left or not self.config.model.u_coefficients:
             return {}
-        columns = columns_of(self.inexact, self.start, self.points, self.channels)
-        spread = np.sqrt(np.sum(columns**2, axis=1)).reshape(len(self.channels), -1)
-        return {name: rms(rows) for name, rows in zip(self.channels, spread, strict=True)}
+        spread = self.stated.by_channel(spread_of(self.inexact, self.start, self.points, self.channels))
+        return {name: rms(rows) for name, rows in spread.items()}
 
     @cached_property
     def excused(self) -> dict[str, float]:

@@ -182,7 +182,10 @@ class BesideColumns(NamedTuple):
         limits = {name: max(known[name], self.structure.allowed.get(name, 0.0)) for name in channels}
         strange = tuple(name for name in channels if size[name] > limits[name])
         less = {**size, **{name: known[name] for name in strange}}
-        unexcused = self.evidence(size) - self.evidence(less) - paid if strange else 0.0
+        if not strange or less == expected:
+            unexcused = gain if strange else 0.0
+        else:
+            unexcused = self.evidence(size) - self.evidence(less) - paid
         return Smooth(size, gain, {n: one for n, one in expected.items() if one}, strange, unexcused)
 
     def _climbed(

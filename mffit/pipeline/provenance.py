@@ -150,12 +150,14 @@ def known_of_model(tyre: Tyre, config: Config, path: Path | None, *, same: bool,
     that was edited since, so that the result.json next to it has other values, has no posterior; the tyre misses the formula of
     its build all the same.
     """
-    result = {} if path is None else _result_of_build(tyre, path)
-    posterior = None if path is None else _posterior(_result_of(tyre, path))
+    result = {} if path is None else _result_beside(path)
+    built = _has_values(tyre, result)
+    posterior = _posterior(result) if built else None
     if same and (fresh or posterior is not None):
         known = {name: entry.u for name, entry in config.coefficients.items() if entry.u is not None}
         return Asked(coefficients=refitted(tyre, curved=config.rig.on_disc, stated=known), seen=True)
-    return Asked(coefficients=None if config.model.u_coefficients else posterior, left=_left(result))
+    left = _left(result) if built or _has_inputs(tyre, result) else {}
+    return Asked(coefficients=None if config.model.u_coefficients else posterior, left=left)
 
 
 def posterior_of(tyre: Tyre, path: Path) -> Numbers | None:
@@ -170,28 +172,14 @@ def missed_by_file(tyre: Tyre, path: Path) -> dict[str, float]:
 
 def was_edited(tyre: Tyre, path: Path) -> bool:
     """Whether a file of the build whose result.json is next to it has other values."""
-    return bool(_result_of_build(tyre, path)) and not _result_of(tyre, path)
+    result = _result_beside(path)
+    return _has_inputs(tyre, result) and not _has_values(tyre, result)
 
 
 def _result_of(tyre: Tyre, path: Path) -> dict[str, Any]:
     """The result of the build that wrote a file; empty if no build did or the file was edited."""
     result = _result_beside(path)
-    try:
-        values = {name: float(row["value"]) for name, row in result["fit"]["coefficients"].items()}
-    except (ValueError, KeyError, TypeError, AttributeError):
-        return {}
-    same = all(np.isclose(float(tyre[n]), v, rtol=1e-6, atol=1e-12) for n, v in values.items())
-    return result if same else {}
-
-
-def _result_of_build(tyre: Tyre, path: Path) -> dict[str, Any]:
-    """The same, also if the file was edited: its comments name the inputs of the build."""
-    result = _result_beside(path)
-    try:
-        of_it = _of_inputs(result["made"]["inputs"]) == _inputs_stated(tyre)
-    except (KeyError, TypeError, AttributeError):
-        of_it = False
-    return result if of_it else _result_of(tyre, path)
+    return result if _has_values(tyre, result) else {}
 
 
 def _result_beside(path: Path) -> dict[str, Any]:
@@ -200,6 +188,23 @@ def _result_beside(path: Path) -> dict[str, Any]:
         return dict(json.loads((path.parent / BUILT).read_text(encoding="utf-8")))
     except (OSError, ValueError, TypeError):
         return {}
+
+
+def _has_values(tyre: Tyre, result: Mapping[str, Any]) -> bool:
+    """Whether a file has the coefficients of a result."""
+    try:
+        values = {name: float(row["value"]) for name, row in result["fit"]["coefficients"].items()}
+    except (ValueError, KeyError, TypeError, AttributeError):
+        return False
+    return all(np.isclose(float(tyre[n]), v, rtol=1e-6, atol=1e-12) for n, v in values.items())
+
+
+def _has_inputs(tyre: Tyre, result: Mapping[str, Any]) -> bool:
+    """Whether the comments of a file name the inputs of a result, as they do however the file was edited."""
+    try:
+        return _of_inputs(result["made"]["inputs"]) == _inputs_stated(tyre)
+    except (KeyError, TypeError, AttributeError):
+        return False
 
 
 def _inputs_stated(tyre: Tyre) -> dict[str, str]:
