@@ -29,6 +29,12 @@ def decimals_of(u: float, digits: int = 2) -> int:
     return max(0, places - (round(u, places) >= 10.0 ** (digits - places)))
 
 
+def rounded_up(value: float, digits: int = 2) -> float:
+    """The next larger number of so few significant digits."""
+    step = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
+    return float(f"{math.ceil(value / step) * step:.{digits}g}")
+
+
 def number(value: float | None, decimals: int | None = None, *, digits: int = 4) -> str:
     """A number with fixed decimals, or else ``digits`` significant ones; a dash for None or NaN."""
     if value is None or not math.isfinite(value):

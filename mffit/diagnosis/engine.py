@@ -18,6 +18,7 @@ from mffit.diagnosis.inexact import with_rig
 from mffit.diagnosis.needs import possible, without
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import (
+    CountsAsExact,
     DiagnosisNote,
     LeftByFormula,
     MoreThanBuild,
@@ -96,6 +97,7 @@ def _notes(
     playing = int(np.sum(done.explanation.refined.state.floats(done.explanation.problem.points)))
     more = {} if confirmed.rest else beyond_build(found, search)
     by_build = bool(search.asked.left)
+    u = search.excusing(found.smooth)
     misses = not confirmed.rest and (found.smooth.expected if by_build else found.smooth.found)
     left = LeftByFormula(search.asked.left or search.by_coefficients, not by_build) if misses else None
     remarks = (
@@ -104,6 +106,7 @@ def _notes(
         wrong,
         odd_runs(done.explanation, search, doubted=bool(confirmed.rest or more)),
         MoreThanBuild(more) if more else left,
+        CountsAsExact(u, search.config.model.u_coefficients) if u else None,
         without_noise(found.scatter),
         *offsets_or_memory(found.scatter, search.candidates, found.chosen.ids),
         WithinPlay(playing) if playing else None,

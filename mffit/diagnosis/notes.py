@@ -233,6 +233,26 @@ class LeftByFormula:
 
 
 @dataclass(frozen=True, slots=True)
+class CountsAsExact:
+    """Structure that needs a cause because the coefficients of the given file are declared exact, or nearly so."""
+
+    inexactness: float  #: relative, of all coefficients, from which on it would need none
+    declared: float  #: as declared
+
+    @property
+    def cure(self) -> str:
+        """What to declare, as a clause."""
+        return (
+            f"if coefficients of the given file are inexact, state it: [model] u_coefficients = {self.inexactness:g} instead of "
+            f"{self.declared:g} would explain as much"
+        )
+
+    @property
+    def sentence(self) -> str:
+        return f"{begun(self.cure)}."
+
+
+@dataclass(frozen=True, slots=True)
 class MoreThanBuild:
     """The model misses more than twice what its build left, even with the errors of the rig that are declared."""
 

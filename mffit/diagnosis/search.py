@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -11,16 +12,18 @@ import numpy as np
 from mffit.config import Config
 from mffit.constants import TWO_SIGMA
 from mffit.diagnosis.inexact import columns_of, slopes_of, spread_of, with_rig
+from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import NotVisible, OneSweep
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.smooth import smooth_basis
+from mffit.diagnosis.smooth import Smooth, smooth_basis
 from mffit.effects import CATALOG, Effect
 from mffit.linearised.constants import DIVISIONS_OF_A_SWEEP
 from mffit.numbers import Numbers
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
+from mffit.rounding import rounded_up
 from mffit.scatter import rms
 from tir import Tyre
 
@@ -123,10 +126,16 @@ class Search:
     @cached_property
     def by_coefficients(self) -> dict[str, float]:
         """By channel, the rms [N], [Nm] by which coefficients of declared inexactness change the readings; empty without any."""
-        if self.asked.coefficients is not None or self.asked.left or not self.config.model.u_coefficients:
+        u = self.config.model.u_coefficients
+        return {name: u * size for name, size in self._by_whole_coefficients.items() if u}
+
+    @cached_property
+    def _by_whole_coefficients(self) -> dict[str, float]:
+        """The same with every coefficient as uncertain as it is large; empty if its build tells what it misses."""
+        if self.asked.coefficients is not None or self.asked.left:
             return {}
-        spread = self.stated.by_channel(spread_of(self.inexact, self.start, self.points, self.channels))
-        return {name: rms(rows) for name, rows in spread.items()}
+        whole = spread_of(declared_inexactness(self.tyre, 1.0), self.start, self.points, self.channels)
+        return {name: rms(rows) for name, rows in self.stated.by_channel(whole).items()}
 
     @cached_property
     def excused(self) -> dict[str, float]:
@@ -135,6 +144,15 @@ class Search:
         A formula whose coefficients are that inexact may miss the tyre by as much: such structure is found, but needs no cause.
         """
         return self._amplitudes(self.by_coefficients)
+
+    def excusing(self, found: Smooth) -> float | None:
+        """The inexactness of all coefficients that would explain a structure, with two digits; None if it needs none.
+
+        None also where it would have to be as large as the coefficients, and for a file whose build tells what it misses.
+        """
+        whole = self._amplitudes(self._by_whole_coefficients)
+        u = max((found.amplitude[n] / whole.get(n, math.nan) for n in found.strange), default=math.nan)
+        return rounded_up(u) if found.is_strange and u < 1.0 else None
 
     def _amplitudes(self, sizes: Mapping[str, float]) -> dict[str, float]:
         """Two standard deviations of sizes by channel [N], [Nm], over the rms of the readings."""

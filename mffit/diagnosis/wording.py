@@ -11,7 +11,7 @@ from mffit.constants import MISFIT_AT_NOISE, MOST, NAMED_IN_SENTENCE, TWO_SIGMA
 from mffit.diagnosis import constants, priors
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.noise import MemorySpan, Noise, Origin
-from mffit.diagnosis.notes import AnotherTyre, MoreThanBuild, NoRepair, TakenOff, short
+from mffit.diagnosis.notes import AnotherTyre, CountsAsExact, MoreThanBuild, NoRepair, TakenOff, short
 from mffit.diagnosis.odd_level import OddLevel
 from mffit.diagnosis.remains import BestEffect
 from mffit.diagnosis.rest import Answer, Rest, RestKind
@@ -131,7 +131,10 @@ def _cure(diagnosis: Diagnosis) -> str:
         return f"repeat the points around {_around(diagnosis.bump)}"
     if first.kind is RestKind.SCATTER:
         return f"if all readings of the rig scatter so, state u_{column(first.channel)} as large as that"
-    return "no single sweep is at fault; give the model of this tyre, or fit it first (mffit build)"
+    exact = [note.cure for note in diagnosis.notes if isinstance(note, CountsAsExact)]
+    return "; ".join(
+        ["no single sweep is at fault; give the model of this tyre, or fit it first (mffit build)", *exact]
+    )
 
 
 def advice(diagnosis: Diagnosis) -> list[str]:

@@ -20,7 +20,7 @@ from disc_project import disc_project
 import mffit
 import tir
 from mffit.diagnosis import Diagnosis
-from mffit.diagnosis.notes import LeftByFormula, WithoutModelError
+from mffit.diagnosis.notes import CountsAsExact, LeftByFormula, WithoutModelError
 from mffit.diagnosis.odd_level import OddLevel
 from mffit.diagnosis.rest import Answer
 from tir import Tyre
@@ -243,11 +243,10 @@ def test_the_miss_of_the_formula_alone_is_no_effect(fitted_brush, tmp_path):
     assert_named(mffit.diagnose(brush.written(Brush(), tmp_path, 81), fitted_brush))
 
 
-def inexact(project: Path) -> Path:
-    """The project with coefficients of the model declared 3 % uncertain."""
-    project.write_text(
-        f"{project.read_text(encoding='utf-8')}\n[model]\nu_coefficients = 0.03\n", encoding="utf-8"
-    )
+def inexact(project: Path, u: float = 0.03) -> Path:
+    """The project with the relative uncertainty of the model's coefficients declared."""
+    text = project.read_text(encoding="utf-8")
+    project.write_text(f"{text}\n[model]\nu_coefficients = {u}\n", encoding="utf-8")
     return project
 
 
@@ -285,6 +284,15 @@ def test_an_effect_is_found_in_a_file_that_is_declared_inexact(fitted_brush, tmp
     """What the formula misses, 11 N, is less than what such coefficients move."""
     found = mffit.diagnose(inexact(brush.written(Brush(), tmp_path, seed)), softer(fitted_brush))
     assert_repaired(found, fitted_brush)
+
+
+def test_an_unknown_cause_says_the_inexactness_that_would_explain_it(fitted_brush, tmp_path):
+    """As stated, it is enough: the edit is found and trusted."""
+    project, edited = brush.written(Brush(), tmp_path, 81), softer(fitted_brush)
+    found = mffit.diagnose(project, edited)
+    (note,) = [note for note in found.notes if isinstance(note, CountsAsExact)]
+    assert note.cure in found.reasons[0]
+    assert_repaired(mffit.diagnose(inexact(project, note.inexactness), edited), fitted_brush)
 
 
 def test_the_miss_of_the_formula_is_not_missing_in_a_file_that_is_declared_inexact(fitted_brush, tmp_path):
