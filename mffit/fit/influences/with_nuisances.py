@@ -46,17 +46,32 @@ def fit_with_nuisances(
     one_mount = len(np.unique(problem.points.mount)) < 2
     if not config.rig.on_disc and len(problem.points.used_setups) < 2 and one_mount:
         fitted, plan = with_known_zeros(fitted, problem, plan, left)
-    unseen = plan.asymmetries if config.rig.on_disc else []
     found = _with_influences(config, problem, plan, fitted, left, progress)
-    if not unseen:
+    if not config.rig.on_disc:
         return found
     left = left_by(found.full, near=left)
-    if left.is_exact or (not problem.points.one_sided and left.evidence_of(unseen) > CERTAIN_EVIDENCE):
+    unseen = _untold(plan, left, one_sided=problem.points.one_sided)
+    if not unseen:
         return replace(found, left=left)
     plan = plan.holding(unseen, UNSEEN)
     symmetric = {name: plan.expected.get(name, problem.value(name)) for name in unseen}
     begin = first_fit(problem.with_values(symmetric), {**start, **symmetric}, plan)
     return _with_influences(config, problem, plan, begin, left, progress)
+
+
+def _untold(plan: FitPlan, left: LinearisedFit, *, one_sided: bool) -> list[str]:
+    """Free numbers of a disc that the readings do not tell from the model error: the asymmetries together, and errors of the rig.
+
+    One side of a disc never tells an asymmetry from what the formula misses.
+    """
+    if left.is_exact:
+        return []
+    odd = plan.asymmetries
+    others = [n.name for n in plan.rig if n.name not in odd and n.name not in plan.hand.names]
+    return [
+        *(odd if odd and (one_sided or left.evidence_of(odd) <= CERTAIN_EVIDENCE) else ()),
+        *(name for name in others if left.evidence_of([name]) <= CERTAIN_EVIDENCE),
+    ]
 
 
 def _with_influences(

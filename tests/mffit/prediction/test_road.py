@@ -47,6 +47,12 @@ def test_where_the_formula_misses_one_side_of_a_disc_holds_the_asymmetries(built
     assert all(built.result.fit.coefficients[name].value == 0.0 for name in ODD)
 
 
+def test_errors_of_the_rig_that_the_model_error_hides_stay_as_declared(built):
+    """Free ones would be stated as 0.1 +- 0.5 deg of camber skew, of which 0.1 is declared, and the path radius as +- 4 mm."""
+    assert "camber_skew_deg" not in built.result.fit.rig
+    assert built.result.fit.rig["path_radius_m"] == pytest.approx((DISC, 0.0018))
+
+
 def test_noise_that_hides_what_the_formula_misses_does_not_free_the_asymmetries(tmp_path):
     """Free ones give the symmetric tyre a grip of 0.98 +- 0.02 to one side and of 1.05 +- 0.02 to the other."""
     found = build(disc_of_a_brush(tmp_path / "tyre", TYRE, noise=70.0)).result
