@@ -27,6 +27,7 @@ from tir import Tyre
 class Begun(NamedTuple):
     """All that is decided before the search."""
 
+    base: Tyre | None
     hand: Hand
     known: Known
     radii: Vertical
@@ -61,7 +62,7 @@ def begin(config: Config, points: Points, measured: Measured, base: Tyre | None)
     plan = fit_plan(config, points, measured, known, start, fleet, turning)
     start = hand.starting(start)
     problem = fit_problem(config, points, measured, known.values, plan.channels)
-    return Begun(hand, known, radii, turning, start, plan, problem)
+    return Begun(base, hand, known, radii, turning, start, plan, problem)
 
 
 def sketch(config: Config, points: Points, measured: Measured, base: Tyre | None) -> FitResult:

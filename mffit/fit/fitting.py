@@ -11,11 +11,11 @@ import numpy as np
 from mffit.config import Config, axis_signs
 from mffit.config.loading import as_declared
 from mffit.fit import agreement, constants
-from mffit.fit.bands import bands
-from mffit.fit.beginning import begin
+from mffit.fit.bands import Bands, bands
+from mffit.fit.beginning import Begun, begin
 from mffit.fit.coefficients import of_file
-from mffit.fit.delivery import Beside, deliver
-from mffit.fit.fitted import left_by, with_errors_of
+from mffit.fit.delivery import Beside, Delivered, deliver
+from mffit.fit.fitted import Fitted, left_by, with_errors_of
 from mffit.fit.influences.confounding import confounding_sentence, confoundings
 from mffit.fit.influences.modelled import at_temperature, between_runs, over_speed, without_terms
 from mffit.fit.influences.nuisance_choice import at_reference
@@ -42,7 +42,7 @@ from mffit.linearised import LinearisedFit
 from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
-from mffit.prediction import predictor
+from mffit.prediction import Predictor, predictor
 from mffit.progress import DERIVING, PREDICTING, Progress, silent
 from mffit.rig import Simulation
 from mffit.rig_errors import P_REF
@@ -51,7 +51,7 @@ from mffit.suspicion.mounts import undeclared_mount
 from mffit.suspicion.outliers import outliers
 from mffit.suspicion.reversals import turning_sentences
 from tir import Tyre
-from tir.errors import begun
+from tir.errors import begun as capitalised
 
 
 def fit(
@@ -72,99 +72,126 @@ def fit(
     Raises InputError if there are fewer points than coefficients, or a sweep contradicts all others beyond plausibility.
     """
     began = time.perf_counter()
-    hand, known, radii, turning, start, plan, problem = begin(config, points, measured, base)
-    found, left_by_formula, doubts = _fitted_and_judged(config, problem, start, plan, progress)
+    begun = begin(config, points, measured, base)
+    problem = begun.problem
+    found, left_by_formula, doubts = _fitted_and_judged(config, problem, begun.start, begun.plan, progress)
+    found, left_by_file = _with_errors(found, left_by_formula)
     fitted, full = found.plain, found.full
-    full = with_errors_of(full, left_by_formula)
-    if found.at_temperature:
-        left_by_file = left_by(fitted, near=left_by_formula)
-        fitted = with_errors_of(fitted, left_by_file)
-    else:
-        left_by_file, fitted = left_by_formula, full
-    found = replace(found, plain=fitted, full=full)
     # Pressure is an input of a property file, which has no coefficient for these effects of it, so they are switched off.
     delivered = without_terms(fitted, [P_REF])
     readings, best = (one.readings(points, problem.channels) for one in (delivered, full.simulation))
-    outlying = outliers(points, problem.sigma, found.stated.sigma, best)
-    at_turns = full.problem.turning()
 
     progress(DERIVING)
-    use = plain_use(config)
-    beside = Beside(radii, steps)
-    made = deliver(config, known, points, base, fitted, beside)
+    use, on_disc = plain_use(config), config.rig.on_disc
+    beside = Beside(begun.radii, steps)
+    made = deliver(config, begun.known, points, base, fitted, beside)
     files = made.files
     temperature, setups = None, scatter_of_setups(config, measured)
     if found.at_temperature:
-        special = deliver(config, known, points, base, full, beside, only=use)
+        special = deliver(config, begun.known, points, base, full, beside, only=use)
         own = of_file(special.files, use, special.coefficients)
-        file = special.files.by_use[use]
-        temperature = at_temperature(found, points, file, own, left_by_formula, setups)
+        temperature = at_temperature(found, points, special.files.by_use[use], own, left_by_formula, setups)
 
-    runs, speed = between_runs(found, points), over_speed(found, points)
-    confounded = confoundings(replace(full, problem=at_reference(config, full.problem)))
-    channels = agreement.with_points(readings, points)
-    tyre = files.by_use["turn-slip" if config.rig.on_disc else "normal"].tyre
-    simulation = Simulation(tyre.values, turn_slip=config.rig.on_disc)
-    found_rig = {name: value for name, (value, _) in fitted.rig_stated.items()}
-    known_forces, with_zeros = (
-        predictor(points, left_by_file, found_rig, exact, setups=setups).stating(fitted.posterior)
-        for exact in ((), zeros_of_rig(fitted.zeros))
+    tyre = files.by_use["turn-slip" if on_disc else "normal"].tyre
+    prediction, wide = _predicted(
+        fitted, left_by_file, points, Simulation(tyre.values, turn_slip=on_disc), setups
     )
-    wide = bands(known_forces, fitted.held, simulation, points, with_zeros)
     turned = undeclared_mount.find(points, FittedModel(full.simulation, left_by_formula))
-    mounts = tuple(map(undeclared_mount.said, turned))
-    modelled, others = nuisance_sentences(config.tyre.name, found, temperature, runs, channels)
-    moved, contradicted = (
-        ("", False) if turning is None else zeros_sentence(turning, fitted, from_base=base is not None)
-    )
-    return FitResult(
+    result = FitResult(
         tyre=tyre,
         written=files.by_use[use].tyre,
         coefficients=of_file(files, use, made.coefficients),
-        channels=channels,
+        channels=agreement.with_points(readings, points),
         odd=agreement.with_odd_part(files.by_use["normal"].tyre.values, points, parts),
         simulation=delivered,
         rig={**fitted.rig_stated, **made.zeros},
         model=readings,
         posterior=made.posterior,
         coverage=(*found.plan.cover, *(direction.coverage for direction in made.relaxation)),
-        explanations=(
-            *modelled,
-            *explanations(config, files, made.known.values, measured, hand),
-            *filter(None, [vertical_sentence(radii), alignment_sentence(config, measured)]),
-            *others,
-            *remarks(config, points, fitted, tyre.values, wide),
-            *([f"{begun(moved)}."] if moved and not contradicted else []),
-        ),
-        warnings=(
-            *([moved] if contradicted else []),
-            *warnings(full, doubts, outlying, files.untested),
-            *mounts,
-            *nominal_pressure_sentences(files),
-            *turning_sentences(points, best, at_turns),
-            *(confounding_sentence(row, modelled=found.at_temperature) for row in confounded),
-        ),
-        seconds=time.perf_counter() - began,
+        explanations=(),
+        warnings=(),
+        seconds=0.0,
         epsilon_gamma_model=_epsilon_gamma(made.known.values, points, measured),
         doubts=doubts,
-        mounts=mounts,
-        outliers=outlying,
-        at_turns=at_turns,
+        mounts=tuple(map(undeclared_mount.said, turned)),
+        outliers=outliers(points, problem.sigma, found.stated.sigma, best),
+        at_turns=full.problem.turning(),
         search=fitted,
         full=full,
         left_by_formula=left_by_formula,
         left_by_file=left_by_file,
         files=files,
         temperature=temperature,
-        speed=speed,
+        speed=over_speed(found, points),
         choice=found.choice,
-        runs=runs,
-        confounded=confounded,
-        radii=radii,
+        runs=between_runs(found, points),
+        confounded=confoundings(replace(full, problem=at_reference(config, full.problem))),
+        radii=begun.radii,
         bands=wide,
-        prediction=known_forces,
+        prediction=prediction,
         relaxation=made.relaxation,
     )
+    explained, warned = _sentences(config, begun, measured, found, made, result)
+    turning = turning_sentences(points, best, result.at_turns)
+    return replace(
+        result, explanations=explained, warnings=(*warned, *turning), seconds=time.perf_counter() - began
+    )
+
+
+def _with_errors(found: NuisanceFit, left_by_formula: LinearisedFit) -> tuple[NuisanceFit, LinearisedFit]:
+    """The fits with standard errors that hold the model error; and the linear model of the plain file's residuals."""
+    full = with_errors_of(found.full, left_by_formula)
+    if not found.at_temperature:
+        return replace(found, plain=full, full=full), left_by_formula
+    left_by_file = left_by(found.plain, near=left_by_formula)
+    return replace(found, plain=with_errors_of(found.plain, left_by_file), full=full), left_by_file
+
+
+def _predicted(
+    fitted: Fitted, left: LinearisedFit, points: Points, simulation: Simulation, setups: Mapping[str, float]
+) -> tuple[Predictor, Bands]:
+    """The predictor of the plain file's fit, and the bands of the written tyre, whose ``simulation`` has no errors of the rig."""
+    rig = {name: value for name, (value, _) in fitted.rig_stated.items()}
+    known, with_zeros = (
+        predictor(points, left, rig, exact, setups=setups).stating(fitted.posterior)
+        for exact in ((), zeros_of_rig(fitted.zeros))
+    )
+    return known, bands(known, fitted.held, simulation, points, with_zeros)
+
+
+def _sentences(
+    config: Config,
+    begun: Begun,
+    measured: Measured,
+    found: NuisanceFit,
+    made: Delivered,
+    result: FitResult,
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The explanations and the warnings of a fit, the most important of each first."""
+    fitted, wide, files, points = found.plain, result.bands, made.files, found.stated.points
+    assert wide is not None
+    moved, contradicted = "", False
+    if begun.turning is not None:
+        moved, contradicted = zeros_sentence(begun.turning, fitted, from_base=begun.base is not None)
+    modelled, others = nuisance_sentences(
+        config.tyre.name, found, result.temperature, result.runs, result.channels
+    )
+    explained = (
+        *modelled,
+        *explanations(config, files, made.known.values, measured, begun.hand),
+        *filter(None, [vertical_sentence(begun.radii), alignment_sentence(config, measured)]),
+        *others,
+        *remarks(config, points, fitted, result.tyre.values, wide),
+        *([f"{capitalised(moved)}."] if moved and not contradicted else []),
+    )
+    warned = (
+        *([moved] if contradicted else []),
+        *warnings(found.full, result.doubts, result.outliers, files.untested),
+        *result.mounts,
+        *nominal_pressure_sentences(files),
+        *(confounding_sentence(row, modelled=found.at_temperature) for row in result.confounded),
+    )
+    return explained, warned
 
 
 def _fitted_and_judged(

@@ -442,11 +442,6 @@ def predictor(
     Rig errors ``known`` are taken as exact, to find how much they widen the bands. ``terms`` are names of the temperature terms
     of the fit, with their reference. ``setups`` are standard deviations of zeros from set-up to set-up.
     """
-    zeros: dict[str, float] = {}
-    for number, value in rig.items():
-        error = error_of(number)
-        if error in ZEROS and number not in known and abs(value) >= abs(zeros.get(error.name, 0.0)):
-            zeros[error.name] = value
     # Coefficients, terms of speed, and rig errors that a further run shares with the readings: calibrations and lasting zeros.
     kept = [
         i
@@ -477,9 +472,20 @@ def predictor(
     V_range = float(np.min(points.V)), float(np.max(points.V))
     beside = {name: rig[name] for name in (*(error.name for error in BESIDE), *terms) if name in rig}
     T_range = (float(np.nanmin(points.T)), float(np.nanmax(points.T))) if terms else None
+    zeros = _largest_zeros(rig, known)
     return Predictor(
         main_path(points), names, channels, zeros, beside, V_range, T_range, float(np.min(points.Fz)), setups
     )
+
+
+def _largest_zeros(rig: Mapping[str, float], known: Collection[str]) -> dict[str, float]:
+    """By rig error, the zero that lies farthest from 0 of all set-ups; none of those that are ``known``."""
+    zeros: dict[str, float] = {}
+    for number, value in rig.items():
+        error = error_of(number)
+        if error in ZEROS and number not in known and abs(value) >= abs(zeros.get(error.name, 0.0)):
+            zeros[error.name] = value
+    return zeros
 
 
 def root_with_held(own: LinearisedChannel, kept: Sequence[int], spread: Mapping[int, float]) -> np.ndarray:

@@ -329,17 +329,13 @@ def _fitted(
     values = {**values, **end.values}
     x = np.array([float(values[name]) for name in before])
     slope = of_model(radius_of, before, measured, u).linear(x).slope
-    stderr = np.sqrt(np.diag(covariance))
+    stderr = dict(zip(end.names, np.sqrt(np.diag(covariance)).tolist(), strict=True))
     return _OfRadius(
         values=dict(end.values),
         covariance=covariance,
         moved=-end.covariance @ end.jacobian.T @ slope,
         rms=u * rms(end.data),
-        regularised=frozenset(
-            n.name
-            for n, error in zip(end.objective.numbers, stderr.tolist(), strict=True)
-            if error > MOST * n.spread
-        ),
+        regularised=frozenset(n.name for n in end.objective.numbers if stderr[n.name] > MOST * n.spread),
     )
 
 
