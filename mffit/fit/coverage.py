@@ -143,7 +143,7 @@ def side_run(points: Points) -> bool:
 
 UNSEEN = (
     "the formula misses these readings, and they do not tell an asymmetry from what it misses of turn slip: run more of the "
-    "other side of the disc, or the tyre turned on its rim"
+    "other side of the disc"
 )
 """Why asymmetries of a tyre are held of which a disc shows nothing beside the model error."""
 

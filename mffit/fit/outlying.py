@@ -139,7 +139,10 @@ class _OfOthers(ReadOnlyArrays):
         # Of a reading that is in the model, the others predict what it would be without it.
         inside = np.isin(rows, self.channel.rows[model.groups[k]])
         unexplained = 1.0 - np.exp(-noise) * spread * inside
-        error, spread = error / unexplained, spread / unexplained
+        # All that is known of some readings is they themselves, and what is left of 1 is rounding.
+        known = unexplained > np.sqrt(np.finfo(float).eps)
+        error = np.where(known, error, 0.0) / np.where(known, unexplained, 1.0)
+        spread = spread / np.where(known, unexplained, 1.0)
         # Nothing holds the last readings of a sweep, and the last but one by them alone, so that an error looks like a bend
         # there: the model error is as uncertain as where nothing was read.
         before = np.searchsorted(np.unique(self.place[rows]), self.place[rows])

@@ -91,9 +91,8 @@ class Points(MeasuredRows):
 
     @property
     def one_sided(self) -> bool:
-        """Whether the path of every point curves to the same side, with the tyre mounted the same way."""
-        alike = len(np.unique(np.sign(self.phi_t))) == 1 and len(np.unique(self.mount)) == 1
-        return alike and self.curved
+        """Whether the path of every point curves to the same side."""
+        return self.curved and len(np.unique(np.sign(self.phi_t))) == 1
 
     @property
     def rolling_radius(self) -> np.ndarray:

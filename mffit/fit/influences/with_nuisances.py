@@ -16,8 +16,10 @@ from mffit.fit.polish import first_fit, polish, with_known_zeros
 from mffit.fit.problem import FitProblem
 from mffit.linearised import LinearisedFit
 from mffit.linearised.components import CERTAIN_EVIDENCE
+from mffit.points import Points
 from mffit.progress import FITTING, FITTING_AGAIN, Progress
 from mffit.rig import Simulation
+from tir.evaluate import CONICITY
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +52,7 @@ def fit_with_nuisances(
     if not config.rig.on_disc:
         return found
     left = left_by(found.full, near=left)
-    unseen = _untold(plan, left, one_sided=problem.points.one_sided)
+    unseen = _untold(plan, left, problem.points)
     if not unseen:
         return replace(found, left=left)
     plan = plan.holding(unseen, UNSEEN)
@@ -59,19 +61,20 @@ def fit_with_nuisances(
     return _with_influences(config, problem, plan, begin, left, progress)
 
 
-def _untold(plan: FitPlan, left: LinearisedFit, *, one_sided: bool) -> list[str]:
-    """Free numbers of a disc that the readings do not tell from the model error: the asymmetries together, and errors of the rig.
+def _untold(plan: FitPlan, left: LinearisedFit, points: Points) -> list[str]:
+    """Free numbers of a disc that the readings do not tell from the model error: asymmetries together, and errors of the rig.
 
-    One side of a disc never tells an asymmetry from what the formula misses.
+    One side of a disc never tells an asymmetry from what the formula misses of turn slip; with the tyre turned on its rim it
+    tells those that change sign.
     """
     if left.is_exact:
         return []
-    odd = plan.asymmetries
+    odd, flipped = plan.asymmetries, len(np.unique(points.mount)) > 1
+    shown = [n for n in odd if n in CONICITY and flipped] if points.one_sided else odd
     others = [n.name for n in plan.rig if n.name not in odd and n.name not in plan.hand.names]
-    return [
-        *(odd if odd and (one_sided or left.evidence_of(odd) <= CERTAIN_EVIDENCE) else ()),
-        *(name for name in others if left.evidence_of([name]) <= CERTAIN_EVIDENCE),
-    ]
+    groups = [shown, *([name] for name in others)]
+    told = {name for group in groups if left.evidence_of(group) > CERTAIN_EVIDENCE for name in group}
+    return [name for name in (*odd, *others) if name not in told]
 
 
 def _with_influences(

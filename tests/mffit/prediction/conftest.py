@@ -99,10 +99,18 @@ DISC = 1.323
 """Radius of the path on the disc [m]."""
 
 
-def disc_of_a_brush(folder: Path, tyre: Brush, other_side: tuple[str, ...] = (), noise: float = 6.0) -> Path:
+def disc_of_a_brush(
+    folder: Path,
+    tyre: Brush,
+    other_side: tuple[str, ...] = (),
+    noise: float = 6.0,
+    flipped: tuple[str, ...] = (),
+    conicity: float = 0.0,
+) -> Path:
     """Sweeps of a symmetric brush tyre on one side of a disc, without errors of the rig; returns ``tyre.toml``.
 
-    The sweeps ``other_side`` are run on the other side too. ``noise`` is that of the side force [N].
+    The sweeps ``other_side`` are run on the other side too, those ``flipped`` also with the tyre turned on its rim, which turns
+    its ``conicity`` (force over load). ``noise`` is that of the side force [N].
     """
     random, files = np.random.default_rng(5), []
     lean = np.array([5.0, 10.0, 15.0, 20.0, 30.0, 40.0])
@@ -113,21 +121,26 @@ def disc_of_a_brush(folder: Path, tyre: Brush, other_side: tuple[str, ...] = (),
     plan |= {f"{way}_roll": (np.linspace(-1.0, 1.0, 5), 0.0) for way in ("forward", "backward")}
     plan |= {f"leaned_{g}": (np.array(SLIP, dtype=float), float(g)) for g in (-30, -15, 15, 30)}
     folder.mkdir(parents=True)
-    sides = [*((name, 1.0) for name in plan), *((name, -1.0) for name in other_side)]
+    runs = [*((name, 1.0, "normal") for name in plan), *((name, -1.0, "normal") for name in other_side)]
+    runs += [(name, 1.0, "flipped") for name in flipped]
     for load in (1000.0, 1700.0, 2600.0):
-        for name, side in sides:
+        for name, side, mount in runs:
             angles = plan[name]
             alpha, gamma = np.broadcast_arrays(*angles)
             way = -1.0 if name == "backward_roll" else 1.0
             Fy, Mz = tyre.forces(
                 *np.radians((alpha, gamma)), np.full(len(alpha), load), phi_t=-side / DISC, direction=way
             )
+            Fy = Fy + conicity * load * (1.0 if mount == "normal" else -1.0)
             table = {"alpha_deg": alpha, "gamma_deg": gamma, "Fz_N": load, "p_kPa": 250.0, "V_mps": 6.0,
                      "direction": "forward" if way > 0.0 else "backward",
                      "Fy_N": Fy + noise * random.standard_normal(len(Fy)),
                      "Mz_Nm": Mz + 0.05 * noise * random.standard_normal(len(Fy)),
                      "u_Fy_N": noise, "u_Mz_Nm": 0.05 * noise}  # fmt: skip
-            run = {"file": f"{name}_{load:.0f}_{'left' if side > 0.0 else 'right'}.csv"}
+            run = {
+                "file": f"{name}_{load:.0f}_{'left' if side > 0.0 else 'right'}_{mount}.csv",
+                "mount": mount,
+            }
             files.append(run if side > 0.0 else run | {"path_centre": "right"})
             pd.DataFrame(table).to_csv(folder / run["file"], index=False)
     shape = {"unloaded_radius": 0.306, "width": 0.15, "rim_radius": 0.2159}

@@ -21,6 +21,7 @@ from mffit.rig import Simulation
 from mffit.rig_errors import error_of
 from mffit.rounding import AtLeast
 from mffit.scatter import rms
+from tir.evaluate import CONICITY
 
 ODD = {"PEY3", "PHY1", "PHY2", "PVY1", "PVY2", "QBZ4", "QDZ3", "QDZ6", "QDZ7", "QEZ4", "QHZ1", "QHZ2"}
 TYRE = Brush(mu=1.3, b=0.025, crown=0.5, reduction=0.1)
@@ -45,6 +46,14 @@ def test_where_the_formula_misses_one_side_of_a_disc_holds_the_asymmetries(built
     held = {name for row in built.result.fit.coverage if UNSEEN in row.missing for name in row.held}
     assert held >= ODD
     assert all(built.result.fit.coefficients[name].value == 0.0 for name in ODD)
+
+
+def test_a_tyre_turned_on_its_rim_shows_no_ply_steer(tmp_path):
+    """On the same side of a disc it has the same ply-steer, and the formula misses it by the same."""
+    flipped = ("sideslip", "forward_roll")
+    found = build(disc_of_a_brush(tmp_path / "tyre", TYRE, flipped=flipped, conicity=0.02))
+    assert all(found.result.fit.coefficients[name].value == 0.0 for name in ODD - {*CONICITY})
+    assert found.result.fit.coefficients["PVY1"].value > 0.0
 
 
 def test_errors_of_the_rig_that_the_model_error_hides_stay_as_declared(built):
