@@ -51,7 +51,7 @@ from mffit.suspicion.mounts import undeclared_mount
 from mffit.suspicion.outliers import outliers
 from mffit.suspicion.reversals import turning_sentences
 from tir import Tyre
-from tir.errors import begun as capitalised
+from tir.errors import begun
 
 
 def fit(
@@ -72,9 +72,11 @@ def fit(
     Raises InputError if there are fewer points than coefficients, or a sweep contradicts all others beyond plausibility.
     """
     began = time.perf_counter()
-    begun = begin(config, points, measured, base)
-    problem = begun.problem
-    found, left_by_formula, doubts = _fitted_and_judged(config, problem, begun.start, begun.plan, progress)
+    beginning = begin(config, points, measured, base)
+    problem = beginning.problem
+    found, left_by_formula, doubts = _fitted_and_judged(
+        config, problem, beginning.start, beginning.plan, progress
+    )
     found, left_by_file = _with_errors(found, left_by_formula)
     fitted, full = found.plain, found.full
     # Pressure is an input of a property file, which has no coefficient for these effects of it, so they are switched off.
@@ -83,12 +85,12 @@ def fit(
 
     progress(DERIVING)
     use, on_disc = plain_use(config), config.rig.on_disc
-    beside = Beside(begun.radii, steps)
-    made = deliver(config, begun.known, points, base, fitted, beside)
+    beside = Beside(beginning.radii, steps)
+    made = deliver(config, beginning.known, points, base, fitted, beside)
     files = made.files
     temperature, setups = None, scatter_of_setups(config, measured)
     if found.at_temperature:
-        special = deliver(config, begun.known, points, base, full, beside, only=use)
+        special = deliver(config, beginning.known, points, base, full, beside, only=use)
         own = of_file(special.files, use, special.coefficients)
         temperature = at_temperature(found, points, special.files.by_use[use], own, left_by_formula, setups)
 
@@ -126,12 +128,12 @@ def fit(
         choice=found.choice,
         runs=between_runs(found, points),
         confounded=confoundings(replace(full, problem=at_reference(config, full.problem))),
-        radii=begun.radii,
+        radii=beginning.radii,
         bands=wide,
         prediction=prediction,
         relaxation=made.relaxation,
     )
-    explained, warned = _sentences(config, begun, measured, found, made, result)
+    explained, warned = _sentences(config, beginning, measured, found, made, result)
     turning = turning_sentences(points, best, result.at_turns)
     return replace(
         result, explanations=explained, warnings=(*warned, *turning), seconds=time.perf_counter() - began
@@ -161,7 +163,7 @@ def _predicted(
 
 def _sentences(
     config: Config,
-    begun: Begun,
+    beginning: Begun,
     measured: Measured,
     found: NuisanceFit,
     made: Delivered,
@@ -171,18 +173,18 @@ def _sentences(
     fitted, wide, files, points = found.plain, result.bands, made.files, found.stated.points
     assert wide is not None
     moved, contradicted = "", False
-    if begun.turning is not None:
-        moved, contradicted = zeros_sentence(begun.turning, fitted, from_base=begun.base is not None)
+    if beginning.turning is not None:
+        moved, contradicted = zeros_sentence(beginning.turning, fitted, from_base=beginning.base is not None)
     modelled, others = nuisance_sentences(
         config.tyre.name, found, result.temperature, result.runs, result.channels
     )
     explained = (
         *modelled,
-        *explanations(config, files, made.known.values, measured, begun.hand),
-        *filter(None, [vertical_sentence(begun.radii), alignment_sentence(config, measured)]),
+        *explanations(config, files, made.known.values, measured, beginning.hand),
+        *filter(None, [vertical_sentence(beginning.radii), alignment_sentence(config, measured)]),
         *others,
         *remarks(config, points, fitted, result.tyre.values, wide),
-        *([f"{capitalised(moved)}."] if moved and not contradicted else []),
+        *([f"{begun(moved)}."] if moved and not contradicted else []),
     )
     warned = (
         *([moved] if contradicted else []),

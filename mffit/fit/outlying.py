@@ -141,8 +141,8 @@ class _OfOthers(ReadOnlyArrays):
         unexplained = 1.0 - np.exp(-noise) * spread * inside
         # All that is known of some readings is they themselves, and what is left of 1 is rounding.
         known = unexplained > np.sqrt(np.finfo(float).eps)
-        error = np.where(known, error, 0.0) / np.where(known, unexplained, 1.0)
-        spread = spread / np.where(known, unexplained, 1.0)
+        unexplained = np.where(known, unexplained, 1.0)
+        error, spread = np.where(known, error, 0.0) / unexplained, spread / unexplained
         # Nothing holds the last readings of a sweep, and the last but one by them alone, so that an error looks like a bend
         # there: the model error is as uncertain as where nothing was read.
         before = np.searchsorted(np.unique(self.place[rows]), self.place[rows])

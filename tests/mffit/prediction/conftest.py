@@ -109,8 +109,8 @@ def disc_of_a_brush(
 ) -> Path:
     """Sweeps of a symmetric brush tyre on one side of a disc, without errors of the rig; returns ``tyre.toml``.
 
-    The sweeps ``other_side`` are run on the other side too, those ``flipped`` also with the tyre turned on its rim, which turns
-    its ``conicity`` (force over load). ``noise`` is that of the side force [N].
+    The sweeps ``other_side`` are run on the other side too, the sweeps ``flipped`` also with the tyre turned on its rim. The
+    force of ``conicity``, over the load, then changes its sign. ``noise`` is that of the side force [N].
     """
     random, files = np.random.default_rng(5), []
     lean = np.array([5.0, 10.0, 15.0, 20.0, 30.0, 40.0])
